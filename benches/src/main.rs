@@ -1,0 +1,4 @@
+//! What `cargo xtask bench` runs.
+#![forbid(unsafe_code)]
+
+fn main() {}

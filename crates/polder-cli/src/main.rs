@@ -1,0 +1,4 @@
+//! The command polder.
+#![forbid(unsafe_code)]
+
+fn main() {}

@@ -1,0 +1,2 @@
+//! Stage 6: constraints inserted by flips, crossings named
+#![forbid(unsafe_code)]

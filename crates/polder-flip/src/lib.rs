@@ -1,0 +1,2 @@
+//! Stage 5: flips to the constrained Delaunay triangulation
+#![forbid(unsafe_code)]

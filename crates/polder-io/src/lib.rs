@@ -1,0 +1,2 @@
+//! File formats and generators of planar straight-line graphs
+#![forbid(unsafe_code)]

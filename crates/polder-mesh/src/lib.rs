@@ -1,0 +1,37 @@
+//! The data that flows through polder, and nothing that computes geometry.
+//!
+//! | type | what it is |
+//! |---|---|
+//! | [`Pslg`] | the input: points and constraints, validated |
+//! | [`GhostMesh`] | the working mesh of the stages: triangles, links, ghost triangles around the hull |
+//! | [`Triangulation`] | the output: triangles in canonical order, neighbors, constrained edges, what became of every point and constraint |
+//!
+//! This crate knows no predicates: topology takes ids, and whoever calls it has decided the geometry before.
+//!
+//! # Conventions
+//!
+//! - Corner `k` of a triangle lies opposite its edge `k` and its neighbor `k`. Edge `k` runs from corner
+//!   `k + 1` to corner `k + 2` (modulo 3), and the triangle lies on its left.
+//! - A *half-edge* is the number `3 * t + k` of edge `k` of triangle `t`.
+#![forbid(unsafe_code)]
+
+mod canonical;
+mod chains;
+mod digest;
+mod error;
+mod ghost;
+mod ids;
+mod pslg;
+mod text;
+mod triangulation;
+
+pub use canonical::Slot;
+pub use chains::Chains;
+pub use digest::Digest;
+pub use error::MeshError;
+pub use ghost::{DELETED, GHOST, GhostMesh, NONE, next, prev, twin_code};
+pub use ids::{ConstraintId, EdgeId, TriangleId, VertexId};
+pub use pslg::{Constraint, Pslg};
+pub use triangulation::{Edge, Parts, Triangulation};
+
+pub use glam::DVec2;

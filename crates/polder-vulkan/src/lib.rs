@@ -1,0 +1,1 @@
+//! The Vulkan compute engine of polder

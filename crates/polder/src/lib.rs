@@ -1,0 +1,2 @@
+//! The constrained Delaunay triangulation: exact, canonical, fast
+#![forbid(unsafe_code)]

@@ -1,0 +1,2 @@
+//! Shared helpers of the workspace tests.
+#![forbid(unsafe_code)]
