@@ -21,6 +21,7 @@ mod digest;
 mod error;
 mod ghost;
 mod ids;
+mod monitor;
 mod pslg;
 mod text;
 mod triangulation;
@@ -31,6 +32,7 @@ pub use digest::Digest;
 pub use error::MeshError;
 pub use ghost::{DELETED, GHOST, GhostMesh, NONE, next, prev, twin_code};
 pub use ids::{ConstraintId, EdgeId, TriangleId, VertexId};
+pub use monitor::{Cancelled, Monitor, Progress};
 pub use pslg::{Constraint, Pslg};
 pub use triangulation::{Edge, Parts, Triangulation};
 

@@ -1,0 +1,67 @@
+use polder_mesh::{Cancelled, MeshError};
+use thiserror::Error;
+
+/// Why there is no triangulation.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The input breaks a rule of [`Pslg`](crate::Pslg).
+    #[error(transparent)]
+    Input(#[from] MeshError),
+    /// Constraints cross each other at points inside both.
+    #[error(
+        "{}{} pairs of constraints cross, the first {} and {}",
+        if *truncated { "more than " } else { "" },
+        pairs.len(),
+        pairs.first().map_or(0, |p| p[0]),
+        pairs.first().map_or(0, |p| p[1])
+    )]
+    CrossingConstraints {
+        /// The pairs, each with its lower constraint first, sorted.
+        pairs: Vec<[u32; 2]>,
+        /// Whether there are more than the pairs listed.
+        truncated: bool,
+    },
+    /// What was asked for does not exist here.
+    #[error("{what}")]
+    Unsupported {
+        /// What is missing, and what to do instead.
+        what: String,
+    },
+    /// A loop ran past its proven bound: a defect of polder, caught before it could hang.
+    #[error("stage {stage}: not done after {bound} rounds, its bound")]
+    BoundExceeded {
+        /// The stage whose loop it was.
+        stage: &'static str,
+        /// The bound.
+        bound: u64,
+    },
+    /// An invariant does not hold: a defect of polder, caught before it could do harm.
+    #[error("stage {stage}: {what}")]
+    Internal {
+        /// The stage that noticed.
+        stage: &'static str,
+        /// What does not hold.
+        what: String,
+    },
+    /// The caller's cancel flag was set.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl Error {
+    /// A stable word for programs: `index_out_of_range`, `non_finite_coordinate`, `crossing_constraints`, `too_large`,
+    /// `unsupported`, `bound_exceeded`, `internal` or `cancelled`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Self::Input(MeshError::NonFiniteCoordinate { .. }) => "non_finite_coordinate",
+            Self::Input(MeshError::IndexOutOfRange { .. }) => "index_out_of_range",
+            Self::Input(MeshError::TooLarge { .. }) => "too_large",
+            Self::CrossingConstraints { .. } => "crossing_constraints",
+            Self::Unsupported { .. } => "unsupported",
+            Self::BoundExceeded { .. } => "bound_exceeded",
+            Self::Input(_) | Self::Internal { .. } => "internal",
+            Self::Cancelled(_) => "cancelled",
+        }
+    }
+}
