@@ -1,2 +1,4 @@
-//! File formats and generators of planar straight-line graphs
+//! File formats and generators of planar straight-line graphs.
 #![forbid(unsafe_code)]
+
+pub mod generate;
