@@ -1,8 +1,45 @@
-//! Exact predicates with the canonical tie-break.
+//! Exact predicates for points in the plane, with a canonical tie-break.
+//!
+//! - [`orient2d`] and [`incircle`] return the sign of the exact determinant, for every finite `f64`: huge, subnormal, or
+//!   both in one call. -0.0 equals 0.0. With an infinite or NaN coordinate the answer is [`Sign::Zero`]; nothing panics.
+//! - [`must_flip`] and [`incircle_canonical`] break ties of cocircular points so that the (constrained) Delaunay
+//!   triangulation is unique; [`tiebreak`] has the proof. [`lexicographic`] is the order behind it.
+//!
+//! ```
+//! use glam::dvec2;
+//! use polder_predicates::{Sign, incircle, must_flip, orient2d};
+//!
+//! let (a, b, c) = (dvec2(0.1, 0.1), dvec2(0.2, 0.2), dvec2(0.3, 0.3));
+//! // 0.3 is not three times 0.1 in binary, but all three points are on the line x = y.
+//! assert_eq!(orient2d(a, b, c), Sign::Zero);
+//!
+//! let square = [dvec2(0.0, 0.0), dvec2(1e300, 0.0), dvec2(1e300, 1e300), dvec2(0.0, 1e300)];
+//! assert_eq!(incircle(square[0], square[1], square[2], square[3]), Sign::Zero);
+//! assert!(must_flip(square[0], square[1], square[3], square[2]));
+//! ```
+//!
+//! # Paths
+//!
+//! A call takes the first of these that can decide. Each is a public module and can be called alone; a path that
+//! cannot decide says `None`, and two that decide agree.
+//!
+//! 1. [`filter`]: plain `f64` with an error bound. It is inlined into the caller and decides nearly all calls on
+//!    scattered points.
+//! 2. [`integers`]: machine integers of 64, 128 and 256 bits for coordinates that are multiples of a common power of two
+//!    not too far below them: lattices, and close calls between ordinary numbers.
+//! 3. [`expansions`]: the adaptive predicates of the `robust` crate, inside the exponent range where they are exact.
+//! 4. [`limbs`]: fixed-point numbers of `u32` limbs, which take whatever is left.
 #![forbid(unsafe_code)]
 
 use glam::DVec2;
-use std::cmp::Ordering;
+
+pub mod expansions;
+pub mod filter;
+pub mod integers;
+pub mod limbs;
+pub mod tiebreak;
+
+pub use tiebreak::{incircle_canonical, lexicographic, must_flip};
 
 /// The sign of an exact value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -17,10 +54,11 @@ pub enum Sign {
 }
 
 impl Sign {
-    fn of(x: f64) -> Self {
-        if x > 0.0 {
+    #[inline(always)]
+    fn of<T: PartialOrd + Default>(value: T) -> Self {
+        if value > T::default() {
             Self::Positive
-        } else if x < 0.0 {
+        } else if value < T::default() {
             Self::Negative
         } else {
             Self::Zero
@@ -30,6 +68,8 @@ impl Sign {
 
 impl std::ops::Neg for Sign {
     type Output = Self;
+
+    #[inline]
     fn neg(self) -> Self {
         match self {
             Self::Negative => Self::Positive,
@@ -39,51 +79,62 @@ impl std::ops::Neg for Sign {
     }
 }
 
-fn coord(p: DVec2) -> robust::Coord<f64> {
-    robust::Coord { x: p.x, y: p.y }
-}
-
-/// Positive if `c` lies to the left of the line from `a` to `b`: if `abc` is counterclockwise.
+/// Positive if `c` lies to the left of the line from `a` to `b`, that is if `abc` is counterclockwise; zero if the
+/// three points lie on one line.
+///
+/// ```
+/// use glam::dvec2;
+/// use polder_predicates::{Sign, orient2d};
+///
+/// let (a, b) = (dvec2(0.0, 0.0), dvec2(3.0, 1.0));
+/// assert_eq!(orient2d(a, b, dvec2(0.0, 1.0)), Sign::Positive);
+/// assert_eq!(orient2d(a, b, dvec2(6.0, 2.0)), Sign::Zero);
+/// assert_eq!(orient2d(a, b, dvec2(6.0, 2.0_f64.next_down())), Sign::Negative);
+/// ```
+#[inline]
 pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Sign {
-    Sign::of(robust::orient2d(coord(a), coord(b), coord(c)))
+    match filter::orient2d(a, b, c) {
+        Some(sign) => sign,
+        None => orient2d_exact(a, b, c),
+    }
 }
 
 /// Positive if `d` lies inside the circle through the counterclockwise `a`, `b`, `c`; zero if on it.
+///
+/// Exchanging two of the four points changes the sign. If `a`, `b`, `c` lie on one line, the circle is that line and its
+/// inside one of the two half planes.
+///
+/// ```
+/// use glam::dvec2;
+/// use polder_predicates::{Sign, incircle};
+///
+/// let (a, b, c) = (dvec2(5.0, 0.0), dvec2(3.0, 4.0), dvec2(-4.0, 3.0));
+/// assert_eq!(incircle(a, b, c, dvec2(0.0, 0.0)), Sign::Positive);
+/// assert_eq!(incircle(a, b, c, dvec2(0.0, -5.0)), Sign::Zero);
+/// assert_eq!(incircle(a, b, c, dvec2(1e-300, -5.0)), Sign::Negative);
+/// ```
+#[inline]
 pub fn incircle(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
-    Sign::of(robust::incircle(coord(a), coord(b), coord(c), coord(d)))
-}
-
-/// By x, then by y.
-pub fn lexicographic(a: DVec2, b: DVec2) -> Ordering {
-    a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y))
-}
-
-/// [`incircle`] with the canonical tie-break: never zero for four distinct points, `abc` counterclockwise.
-pub fn incircle_canonical(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
-    let sign = incircle(a, b, c, d);
-    if sign != Sign::Zero {
-        return sign;
+    match filter::incircle(a, b, c, d) {
+        Some(sign) => sign,
+        None => incircle_exact(a, b, c, d),
     }
-    // Lowering the smallest point's lifting: d itself falls below the plane through a, b, c; another one tilts that
-    // plane, down at d unless d lies beyond the edge opposite to it.
-    let smallest = [a, b, c, d].into_iter().min_by(|p, q| lexicographic(*p, *q));
-    let opposite = match smallest {
-        Some(p) if p == a => (b, c),
-        Some(p) if p == b => (c, a),
-        Some(p) if p == c => (a, b),
-        _ => return Sign::Positive,
-    };
-    -orient2d(opposite.0, opposite.1, d)
 }
 
-/// Whether the edge `bc` shared by the counterclockwise triangles `abc` and `dcb` must be flipped to `ad`.
-pub fn must_flip(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
-    match incircle(a, b, c, d) {
-        Sign::Positive => true,
-        Sign::Negative => false,
-        Sign::Zero => {
-            let first = |p: DVec2, q: DVec2| if lexicographic(p, q).is_lt() { p } else { q };
-            lexicographic(first(a, d), first(b, c)).is_lt()
-        }
-    }
+#[cold]
+#[inline(never)]
+fn orient2d_exact(a: DVec2, b: DVec2, c: DVec2) -> Sign {
+    integers::orient2d_small(a, b, c)
+        .or_else(|| integers::orient2d_wide(a, b, c))
+        .or_else(|| expansions::orient2d(a, b, c))
+        .unwrap_or_else(|| limbs::orient2d(a, b, c))
+}
+
+#[cold]
+#[inline(never)]
+fn incircle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
+    integers::incircle_small(a, b, c, d)
+        .or_else(|| integers::incircle_wide(a, b, c, d))
+        .or_else(|| expansions::incircle(a, b, c, d))
+        .unwrap_or_else(|| limbs::incircle(a, b, c, d))
 }
