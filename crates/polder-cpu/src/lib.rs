@@ -83,7 +83,9 @@ impl Delaunay {
     pub fn finish(self, chains: Chains) -> Triangulation {
         let Self { order, tris } = self;
         let Order { ids, representatives, .. } = order;
-        let get = |t: usize| {
+        // The closure owns the working mesh, so that its memory is free again once the triangles are read.
+        let slots = tris.len();
+        let get = move |t: usize| {
             let Tri { v: [a, b, c, marks], n: [l, m, n, _] } = tris[t];
             let finite = a < DELETED && b < DELETED && c < DELETED;
             finite.then(|| Slot {
@@ -93,6 +95,6 @@ impl Delaunay {
             })
         };
         // Ghosts have no place in the canonical order, so that a neighbor that is one comes out as none.
-        Triangulation::from_slots(tris.len(), get, Parts { representatives, chains })
+        Triangulation::from_slots(slots, get, Parts { representatives, chains })
     }
 }

@@ -2,6 +2,8 @@
 
 use crate::{MeshError, NONE};
 use rayon::prelude::*;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering::Relaxed};
 
 /// A finite triangle as a working mesh holds it: the input of the canonical order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,91 +22,165 @@ pub(crate) struct Canonical {
     pub(crate) constrained: Vec<u8>,
 }
 
-/// A triangle on its way to its place: the two corners after the smallest one, its slot, its smallest corner's place.
+/// A triangle on its way to its place: corners from the smallest on, neighbors still as slots.
 #[derive(Clone, Copy)]
 struct Entry {
-    rest: [u32; 2],
+    corners: [u32; 3],
+    neighbors: [u32; 3],
     slot: u32,
-    rotation: u8,
+    constrained: u8,
 }
 
-/// Sorts the triangles among `slots` slots: a counting sort by the smallest corner, then each small bucket by the
-/// other two. The result depends on the triangles alone, not on their slots or the number of threads.
+impl Entry {
+    const EMPTY: Self = Self { corners: [0; 3], neighbors: [NONE; 3], slot: 0, constrained: 0 };
+
+    fn of(t: usize, slot: Slot) -> Self {
+        let [a, b, c] = slot.corners;
+        let turn = |x: [u32; 3], by: usize| [x[by % 3], x[(by + 1) % 3], x[(by + 2) % 3]];
+        let by = if a < b && a < c { 0 } else { 1 + usize::from(c < b) };
+        let bits = slot.constrained & 7;
+        let constrained = (bits >> by | bits << (3 - by)) & 7;
+        Self { corners: turn(slot.corners, by), neighbors: turn(slot.neighbors, by), slot: t as u32, constrained }
+    }
+}
+
+/// Smallest corners are sorted apart into parts of at least this many vertices (as a power of two), small enough for
+/// the cache, and into at most this many parts, few enough to be written to side by side.
+const PART: u32 = 12;
+const PARTS: u32 = 9;
+/// Slots of one piece of work.
+const PIECE: usize = 1 << 16;
+
+/// Sorts the triangles among `slots` slots: apart by their smallest corner, coarsely; then each part by itself.
+///
+/// Memory is the bottleneck, so that each triangle is read once in the order of the slots, written once to its part,
+/// and written once to its place. The result depends on the triangles alone, not on their slots or the number of
+/// threads.
 pub(crate) fn sort(vertices: usize, slots: usize, get: impl Fn(usize) -> Option<Slot> + Sync) -> Canonical {
-    let smallest = |c: [u32; 3]| {
-        if c[0] < c[1] && c[0] < c[2] {
-            0
-        } else if c[1] < c[2] {
-            1
-        } else {
-            2
-        }
-    };
+    let shift = PART.max(usize::BITS.saturating_sub(vertices.leading_zeros() + PARTS));
+    let parts = (vertices >> shift) + 1;
+    let (mut entries, ends) = scatter(slots, parts, shift, get);
 
-    let mut starts = vec![0u32; vertices + 1];
-    for slot in (0..slots).filter_map(&get) {
-        starts[slot.corners[smallest(slot.corners)] as usize] += 1;
-    }
-    let mut total = 0;
-    for start in &mut starts {
-        total += std::mem::replace(start, total);
-    }
-
-    let empty = Entry { rest: [0; 2], slot: NONE, rotation: 0 };
-    let mut entries = vec![empty; total as usize];
-    for t in 0..slots {
-        if let Some(slot) = get(t) {
-            let r = smallest(slot.corners);
-            let c = slot.corners;
-            let place = &mut starts[c[r] as usize];
-            entries[*place as usize] =
-                Entry { rest: [c[(r + 1) % 3], c[(r + 2) % 3]], slot: t as u32, rotation: r as u8 };
-            *place += 1;
-        }
-    }
-
-    // `starts[v]` has moved to the end of bucket v. Buckets are sorted in place, groups of vertices side by side.
-    const GROUP: usize = 1 << 14;
-    let ends = &starts[..vertices];
-    let mut groups = Vec::new();
+    // Where each triangle goes. Every slot is written at most once, by the part that its triangle is in.
+    let place: Vec<AtomicU32> = (0..slots).into_par_iter().with_min_len(PIECE).map(|_| AtomicU32::new(NONE)).collect();
+    let mut ranges = Vec::with_capacity(parts);
     let mut rest = entries.as_mut_slice();
     let mut begin = 0;
-    for group in ends.chunks(GROUP) {
-        let end = group[group.len() - 1];
-        let (mine, others) = rest.split_at_mut((end - begin) as usize);
-        groups.push((group, begin, mine));
+    for &end in &ends {
+        let (mine, others) = rest.split_at_mut(end - begin);
+        ranges.push((begin, mine));
         (rest, begin) = (others, end);
     }
-    groups.par_iter_mut().for_each(|(ends, begin, mine)| {
-        let mut from = 0;
-        for &end in ends.iter() {
-            let to = (end - *begin) as usize;
-            mine[from..to].sort_unstable_by_key(|e| e.rest);
-            from = to;
+    let sorted = |(i, (begin, mine)): (usize, (usize, &mut [Entry]))| {
+        let order = sort_part(mine, i << shift, 1 << shift);
+        for (i, &from) in order.iter().enumerate() {
+            place[mine[from as usize].slot as usize].store((begin + i) as u32, Relaxed);
         }
-    });
-    drop(groups);
+        order
+    };
+    let orders: Vec<Vec<u32>> = ranges.into_par_iter().enumerate().map(sorted).collect();
 
-    let mut place = vec![NONE; slots];
-    for (i, entry) in entries.iter().enumerate() {
-        place[entry.slot as usize] = i as u32;
-    }
     let mut out = Canonical {
         triangles: vec![[0; 3]; entries.len()],
         neighbors: vec![[NONE; 3]; entries.len()],
         constrained: vec![0; entries.len()],
     };
-    let parts = (&entries, &mut out.triangles, &mut out.neighbors, &mut out.constrained);
-    parts.into_par_iter().with_min_len(4096).for_each(|(entry, corners, neighbors, constrained)| {
-        let Some(slot) = get(entry.slot as usize) else { return };
-        for (k, neighbor) in neighbors.iter_mut().enumerate() {
-            let from = (k + entry.rotation as usize) % 3;
-            corners[k] = slot.corners[from];
-            *neighbor = place.get(slot.neighbors[from] as usize).copied().unwrap_or(NONE);
-            *constrained |= (slot.constrained >> from & 1) << k;
+    let mut rest = (out.triangles.as_mut_slice(), out.neighbors.as_mut_slice(), out.constrained.as_mut_slice());
+    let mut pieces = Vec::with_capacity(parts);
+    let mut begin = 0;
+    for (order, &end) in orders.iter().zip(&ends) {
+        let length = end - begin;
+        let (triangles, neighbors, constrained) =
+            (rest.0.split_at_mut(length), rest.1.split_at_mut(length), rest.2.split_at_mut(length));
+        pieces.push((&entries[begin..end], order, triangles.0, neighbors.0, constrained.0));
+        rest = (triangles.1, neighbors.1, constrained.1);
+        begin = end;
+    }
+    pieces.into_par_iter().for_each(|(mine, order, triangles, neighbors, constrained)| {
+        for (i, &from) in order.iter().enumerate() {
+            let entry = &mine[from as usize];
+            triangles[i] = entry.corners;
+            constrained[i] = entry.constrained;
+            neighbors[i] = entry.neighbors.map(|t| place.get(t as usize).map_or(NONE, |place| place.load(Relaxed)));
         }
     });
     out
+}
+
+/// Writes each triangle to its part. Returns all entries, part after part, and the end of each part.
+fn scatter(
+    slots: usize,
+    parts: usize,
+    shift: u32,
+    get: impl Fn(usize) -> Option<Slot> + Sync,
+) -> (Vec<Entry>, Vec<usize>) {
+    // One column of counts a piece of the slots, so that pieces can be written side by side.
+    let pieces: Vec<_> = (0..slots).step_by(PIECE).map(|from| from..slots.min(from + PIECE)).collect();
+    let part_of = |slot: &Slot| (slot.corners[0].min(slot.corners[1]).min(slot.corners[2]) >> shift) as usize;
+    let count = |piece: &Range<usize>| {
+        let mut counts = vec![0u32; parts];
+        piece.clone().filter_map(&get).for_each(|slot| counts[part_of(&slot)] += 1);
+        counts
+    };
+    let counts: Vec<Vec<u32>> = pieces.par_iter().map(count).collect();
+    let total: usize = counts.iter().flatten().map(|&c| c as usize).sum();
+
+    let mut entries = vec![Entry::EMPTY; total];
+    let mut ends = Vec::with_capacity(parts);
+    let mut targets: Vec<Vec<&mut [Entry]>> = pieces.iter().map(|_| Vec::with_capacity(parts)).collect();
+    let mut rest = entries.as_mut_slice();
+    for part in 0..parts {
+        for (target, counts) in targets.iter_mut().zip(&counts) {
+            let (mine, others) = std::mem::take(&mut rest).split_at_mut(counts[part] as usize);
+            target.push(mine);
+            rest = others;
+        }
+        ends.push(total - rest.len());
+    }
+    pieces.into_par_iter().zip(targets).for_each(|(piece, mut targets)| {
+        let mut next = vec![0u32; parts];
+        for t in piece {
+            if let Some(slot) = get(t) {
+                let part = part_of(&slot);
+                targets[part][next[part] as usize] = Entry::of(t, slot);
+                next[part] += 1;
+            }
+        }
+    });
+    (entries, ends)
+}
+
+/// The order of the entries of one part, whose smallest corners are `first..first + vertices`: a counting sort by the
+/// smallest corner, then each small bucket by the other two.
+fn sort_part(entries: &[Entry], first: usize, vertices: usize) -> Vec<u32> {
+    if entries.is_empty() {
+        return Vec::new();
+    }
+    let mut starts = vec![0u32; vertices];
+    for entry in entries {
+        starts[entry.corners[0] as usize - first] += 1;
+    }
+    let mut total = 0;
+    for start in &mut starts {
+        total += std::mem::replace(start, total);
+    }
+    let mut order = vec![0u32; entries.len()];
+    for (i, entry) in entries.iter().enumerate() {
+        let place = &mut starts[entry.corners[0] as usize - first];
+        order[*place as usize] = i as u32;
+        *place += 1;
+    }
+    // Each start has moved to the end of its bucket.
+    let key = |&i: &u32| entries[i as usize].corners;
+    let mut from = 0;
+    for end in starts {
+        let bucket = &mut order[from as usize..end as usize];
+        if bucket.len() > 1 {
+            bucket.sort_unstable_by_key(key);
+        }
+        from = end;
+    }
+    order
 }
 
 /// The triangle on the other side of each edge, found by sorting the edges.
