@@ -1,4 +1,44 @@
-//! The chores of the workspace.
+//! The chores of the workspace: `cargo xtask ci`, `cargo xtask tidy`, `cargo xtask bench`.
 #![forbid(unsafe_code)]
 
-fn main() {}
+mod bench;
+mod ci;
+mod steps;
+mod tidy;
+
+use clap::{Parser, Subcommand};
+use std::path::Path;
+use std::process::ExitCode;
+
+#[derive(Parser)]
+#[command(name = "cargo xtask", about = "The chores of the polder workspace")]
+struct Arguments {
+    #[command(subcommand)]
+    chore: Chore,
+}
+
+#[derive(Subcommand)]
+enum Chore {
+    /// Everything that has to pass: format, clippy, documentation, tidy, tests.
+    Ci(ci::Arguments),
+    /// The rules of the workspace that no compiler knows: who may depend on whom, file sizes, what must be where.
+    Tidy,
+    /// Builds the benchmarks optimized and runs them.
+    Bench(bench::Arguments),
+}
+
+fn main() -> ExitCode {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
+    let done = match Arguments::parse().chore {
+        Chore::Ci(arguments) => ci::run(root, &arguments),
+        Chore::Tidy => tidy::run(root),
+        Chore::Bench(arguments) => bench::run(root, &arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(why) => {
+            eprintln!("xtask: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}

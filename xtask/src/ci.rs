@@ -1,0 +1,52 @@
+//! `cargo xtask ci`: everything that has to pass.
+
+use crate::steps::{cargo, execute, step};
+use crate::tidy;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+#[derive(clap::Args)]
+pub(crate) struct Arguments {
+    /// Also the tests on large inputs, which take long.
+    #[arg(long)]
+    long: bool,
+}
+
+pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<(), String> {
+    let start = Instant::now();
+    for (tool, component) in [("fmt", "rustfmt"), ("clippy", "clippy")] {
+        let mut command = cargo(root, &[tool, "--version"]);
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        execute(command).map_err(|_| {
+            format!("{component} is not installed for this toolchain: `rustup component add {component}` installs it")
+        })?;
+    }
+
+    step("format", || {
+        execute(cargo(root, &["fmt", "--all", "--check"])).map_err(|why| format!("{why}; `cargo fmt --all` mends it"))
+    })?;
+    step("tidy", || tidy::run(root))?;
+    step("clippy", || {
+        execute(cargo(root, &["clippy", "--workspace", "--all-targets", "--quiet", "--", "--deny", "warnings"]))
+    })?;
+    step("documentation", || {
+        let mut command = cargo(root, &["doc", "--workspace", "--no-deps", "--quiet"]);
+        command.env("RUSTDOCFLAGS", "--deny warnings");
+        execute(command)
+    })?;
+    let tests = if arguments.long { "tests, long ones too" } else { "tests" };
+    step(tests, || execute(all_tests(root, arguments.long)))?;
+    println!("everything passed in {:.0} s", start.elapsed().as_secs_f64());
+    Ok(())
+}
+
+/// Unit tests, tests, doctests; no snapshot is accepted or written anew.
+fn all_tests(root: &Path, long: bool) -> Command {
+    let mut command = cargo(root, &["test", "--workspace", "--quiet"]);
+    if long {
+        command.args(["--", "--include-ignored"]);
+    }
+    command.env("INSTA_UPDATE", "no");
+    command
+}
