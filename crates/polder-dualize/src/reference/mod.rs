@@ -1,0 +1,24 @@
+//! The stages in plain Rust on slices: the same rounds with the same winners as on any other device.
+//!
+//! [`dualize`], [`shift`] and [`insert`] in order; [`triangulate`] is all of them after stage 1.
+
+mod bootstrap;
+mod certify;
+mod corners;
+mod dualize;
+pub(crate) mod elect;
+mod graft;
+mod insert;
+mod key;
+mod locate;
+mod sector;
+mod shift;
+mod star;
+mod takeout;
+mod whole;
+
+pub use certify::certify;
+pub use dualize::{dual, dualize};
+pub use insert::insert;
+pub use shift::shift;
+pub use whole::{Phases, points_to_insert, triangulate};

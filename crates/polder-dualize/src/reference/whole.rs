@@ -1,0 +1,62 @@
+//! Stages 1 to 4 in a row.
+
+use super::{dualize, insert, shift};
+use crate::{Dualized, DualizeError, Inserted, Shifted};
+use glam::DVec2;
+use polder_mesh::NONE;
+use polder_voronoi::{Diagram, Options, Sites};
+
+/// What each of the stages 1 to 4 gives for one set of points.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Phases {
+    /// Stage 1: the grid, the renumbering and the diagram.
+    pub voronoi: polder_voronoi::reference::Output,
+    /// Stage 2.
+    pub dualized: Dualized,
+    /// Stage 3.
+    pub shifted: Shifted,
+    /// Stage 4.
+    pub inserted: Inserted,
+}
+
+impl Phases {
+    /// The positions of the vertices of all meshes here but the dualized one: the points, in the renumbering.
+    pub fn positions(&self, points: &[DVec2]) -> Vec<DVec2> {
+        self.voronoi.sites.order.iter().map(|&i| points[i as usize]).collect()
+    }
+
+    /// The positions of the dualized mesh's vertices: the pixel centers of the sites.
+    pub fn centers(&self) -> Vec<DVec2> {
+        centers(&self.voronoi)
+    }
+}
+
+/// Triangulates points: stages 1 to 4.
+///
+/// # Errors
+///
+/// [`DualizeError::Voronoi`] for no points, or a coordinate that is not finite; other errors are bugs.
+pub fn triangulate(points: &[DVec2], options: &Options) -> Result<Phases, DualizeError> {
+    let voronoi = polder_voronoi::reference::diagram(points, options)?;
+    let positions: Vec<DVec2> = voronoi.sites.order.iter().map(|&i| points[i as usize]).collect();
+    let dualized = dualize(&voronoi.diagram, &voronoi.sites)?;
+    let shifted = shift(dualized.mesh.clone(), &centers(&voronoi), &positions)?;
+    let (missing, starts) = points_to_insert(&voronoi.diagram, &voronoi.sites, &shifted);
+    let inserted = insert(shifted.mesh.clone(), &positions, &missing, &starts)?;
+    Ok(Phases { voronoi, dualized, shifted, inserted })
+}
+
+/// The points that stage 4 must insert, and a vertex close to each: the sites taken out with their heirs, then the
+/// missing points, each with the site that owns its pixel, or that one's heir.
+pub fn points_to_insert(diagram: &Diagram, sites: &Sites, shifted: &Shifted) -> (Vec<u32>, Vec<u32>) {
+    let missing = (sites.count..sites.order.len()).map(|i| {
+        let owner = diagram.color(sites.pixels[i]) as usize;
+        (i as u32, shifted.heirs.get(owner).copied().unwrap_or(NONE))
+    });
+    shifted.taken_out().chain(missing).unzip()
+}
+
+fn centers(voronoi: &polder_voronoi::reference::Output) -> Vec<DVec2> {
+    let sites = &voronoi.sites;
+    sites.pixels[..sites.count].iter().map(|&pixel| voronoi.mapping.center(pixel.map(u32::from))).collect()
+}

@@ -1,0 +1,48 @@
+//! Thousands of small inputs with ties and duplicates, against another way to the same triangulation.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{Random, by_sweep, finish, lattice_points, phases_with};
+use polder_dualize::DVec2;
+use polder_voronoi::{Options, Resolution};
+
+fn check(points: &[DVec2], resolution: Resolution) {
+    let phases = phases_with(points, &Options::from(resolution));
+    let ours = finish(points, &phases);
+    let other = by_sweep(points);
+    assert_eq!(ours, other, "{points:?} {resolution:?}");
+}
+
+fn run(inputs: u64, seed: u64) {
+    let mut random = Random::new(seed);
+    for _ in 0..inputs {
+        let n = 1 + random.below(40) as usize;
+        let (width, height) = (1 + random.below(12), 1 + random.below(12));
+        let mut points = lattice_points(&mut random, n, width, height);
+        match random.below(4) {
+            0 => points.iter_mut().for_each(|p| *p = p.perp() - DVec2::new(0.5 * p.x, -7.0)),
+            1 => points.iter_mut().for_each(|p| *p += 1e-3 * random.point()),
+            2 => points.iter_mut().for_each(|p| *p = DVec2::new(p.x + p.y * 3.0, p.y + p.x * 3.0)),
+            _ => {}
+        }
+        let resolution = match random.below(4) {
+            0 => Resolution::LongerSide(1 + random.below(20) as u32),
+            1 => Resolution::PixelsPerPoint(1.0),
+            2 => Resolution::PixelsPerPoint(30.0),
+            _ => Resolution::PixelsPerPoint(7.0),
+        };
+        check(&points, resolution);
+    }
+}
+
+#[test]
+fn small_inputs_end_at_the_canonical_triangulation() {
+    run(4000, 1);
+}
+
+#[test]
+#[ignore = "long: cargo xtask ci --long"]
+fn very_many_small_inputs_end_at_the_canonical_triangulation() {
+    run(400_000, 2);
+}
