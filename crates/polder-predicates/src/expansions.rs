@@ -14,12 +14,16 @@
 //! end. That does not change a sign, and it rounds nothing unless a coordinate falls below the window.
 
 use crate::Sign;
-use crate::integers::power_of_two;
 use glam::DVec2;
 
 /// The window of exponents: `2^LOWEST <= |x| < 2^(HIGHEST + 1)`.
 const LOWEST: i32 = -140;
 const HIGHEST: i32 = 199;
+
+/// Two to the `exponent`, which must lie between -1022 and 1023.
+fn power_of_two(exponent: i32) -> f64 {
+    f64::from_bits(((exponent + 1023) as u64) << 52)
+}
 
 /// The power of two of a finite number that is not zero.
 fn exponent(x: f64) -> i32 {

@@ -1,115 +1,87 @@
 //! Machine integers: coordinates that are multiples of a common power of two, as lattices, quantized data and most
 //! close calls on ordinary data are.
 //!
-//! Two sizes, both exact whenever they answer:
+//! Let `2^e` be the power of two of the largest coordinate of the call.
 //!
-//! - **small**: the differences to the last point are exact in `f64` and multiples of `2^-29` of the largest one's
-//!   power of two. They become integers below `2^30`. orient2d then fits `i64` (`2 * 2^60`), incircle `i128`: lifting
-//!   and minor below `2^61`, three products below `3 * 2^122`.
-//! - **wide**: the coordinates are multiples of `2^-60` of the largest one's power of two. They become integers below
-//!   `2^61`, differences below `2^62`; orient2d fits `i128` (`2 * 2^124`), incircle needs 256 bits: lifting and minor
-//!   below `2^125`, three products below `3 * 2^250`.
+//! - **Small**: all coordinates are multiples of `2^(e-28)`. They become integers below `2^29`, differences below
+//!   `2^30`. orient2d then fits `i64` (`2 * 2^60`), incircle `i128`: liftings and minors below `2^61`, the three
+//!   products together below `3 * 2^122`.
+//! - **Wide**: all are multiples of `2^(e-59)`. They become integers below `2^60`, differences below `2^61`. orient2d
+//!   fits `i128` (`2 * 2^122`), incircle needs 256 bits: liftings and minors below `2^123`, the three products together
+//!   below `3 * 2^246`.
 //!
-//! Scaling is exact: `x * 2^k` is converted to an integer, and the integer times `2^-k` must be `x` again, so that
-//! neither a fraction nor an underflow goes unnoticed.
+//! The conversion adds `1.5 * 2^52` times the unit to a coordinate. That rounds it to a multiple of the unit, whose
+//! integer then stands, in two's complement, in the low bits of the sum. What the rounding leaves over is exact in
+//! `f64`; it must be zero, or goes the same way again with a unit that is smaller by `2^31`.
 
 use crate::Sign;
 use glam::DVec2;
 
-/// Two to the `exponent`, which must lie between -1022 and 1023.
-#[inline]
-pub(crate) fn power_of_two(exponent: i32) -> f64 {
-    debug_assert!((-1022..=1023).contains(&exponent));
-    f64::from_bits(((exponent + 1023) as u64) << 52)
-}
-
-/// The power of two of a normal number; -1023 for zero and subnormals, 1024 for what is not finite.
-#[inline]
-fn exponent(x: f64) -> i32 {
-    ((x.to_bits() >> 52) & 0x7ff) as i32 - 1023
-}
-
-/// All of `values` times one power of two, as integers below `2^bits` in absolute value, if they are integers.
+/// `1.5 * 2^exponent`.
 #[inline(always)]
-fn scaled<const N: usize, T: Copy + Default>(
-    values: [f64; N],
-    bits: i32,
-    convert: impl Fn(f64) -> (T, f64),
-) -> Option<[T; N]> {
-    let largest = values.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-    let mut integers = [T::default(); N];
-    if largest == 0.0 {
-        return Some(integers);
-    }
-    let top = exponent(largest);
-    // Outside, the two factors below would not be normal numbers.
-    if !(bits - 1024..=1023).contains(&top) {
-        return None;
-    }
-    let scale = power_of_two(bits - 1 - top);
-    let back = power_of_two(top + 1 - bits);
-    for (integer, value) in integers.iter_mut().zip(values) {
-        let (t, rounded) = convert(value * scale);
-        *integer = t;
-        if rounded * back != value {
+fn shifter(exponent: i32) -> f64 {
+    f64::from_bits((((exponent + 1023) as u64) << 52) | (1 << 51))
+}
+
+/// `p` rounded to a multiple of the unit of `shifter`: as an integer, and what is left over.
+#[inline(always)]
+fn split(p: DVec2, shifter: f64) -> ([i64; 2], DVec2) {
+    let shifted = p + shifter;
+    let low_bits = |x: f64| i64::from(x.to_bits() as i32);
+    ([low_bits(shifted.x), low_bits(shifted.y)], p - (shifted - shifter))
+}
+
+#[inline(always)]
+fn larger(x: f64, y: f64) -> f64 {
+    if x > y { x } else { y }
+}
+
+/// What is not zero makes the sum not zero: nothing underflows in a sum. NaN stays.
+#[inline(always)]
+fn all_zero<const N: usize>(points: [DVec2; N]) -> bool {
+    let sum = points.into_iter().fold(DVec2::ZERO, |sum, p| sum + p.abs());
+    sum.x + sum.y == 0.0
+}
+
+/// Points rounded to multiples of `2^(exponent - 28)`, as integers below `2^29`, with what is left over.
+#[derive(Clone, Copy)]
+struct Rounded<const N: usize> {
+    exponent: i32,
+    integers: [[i64; 2]; N],
+    rest: [DVec2; N],
+}
+
+impl<const N: usize> Rounded<N> {
+    /// `None` outside the range of exponents in which both shifters are normal numbers; zeros alone end here as well.
+    #[inline(always)]
+    fn new(points: [DVec2; N]) -> Option<Self> {
+        let largest =
+            points.iter().fold(DVec2::ZERO, |m, p| DVec2::new(larger(p.x.abs(), m.x), larger(p.y.abs(), m.y)));
+        let exponent = ((larger(largest.x, largest.y).to_bits() >> 52) & 0x7ff) as i32 - 1023;
+        if !(-1015..=999).contains(&exponent) {
             return None;
         }
+        let shifter = shifter(exponent + 24);
+        let pairs = points.map(|p| split(p, shifter));
+        Some(Self { exponent, integers: pairs.map(|p| p.0), rest: pairs.map(|p| p.1) })
     }
-    Some(integers)
+
+    /// As integers below `2^60`, in units of `2^(exponent - 59)`, if they are.
+    #[inline(always)]
+    fn finer(self) -> Option<[[i64; 2]; N]> {
+        let shifter = shifter(self.exponent - 7);
+        let pairs = self.rest.map(|p| split(p, shifter));
+        let mut integers = self.integers;
+        for (integer, ([x, y], _)) in integers.iter_mut().zip(&pairs) {
+            *integer = [(integer[0] << 31) + x, (integer[1] << 31) + y];
+        }
+        if all_zero(pairs.map(|p| p.1)) { Some(integers) } else { None }
+    }
 }
 
-/// `x` rounded to an integer, for `|x| < 2^31`: adding 1.5 * 2^52 leaves it in the low bits of the sum.
 #[inline(always)]
-fn to_small(x: f64) -> (i64, f64) {
-    const SHIFTER: f64 = 6_755_399_441_055_744.0;
-    let shifted = x + SHIFTER;
-    (i64::from(shifted.to_bits() as i32), shifted - SHIFTER)
-}
-
-#[inline(always)]
-fn to_wide(x: f64) -> (i64, f64) {
-    let integer = x as i64;
-    (integer, integer as f64)
-}
-
-/// `p - q`, if it is a double.
-#[inline(always)]
-fn exact_difference(p: f64, q: f64) -> Option<f64> {
-    // If |p| >= |q|, p - d is computed exactly, otherwise d + q is: both hold only for the true difference.
-    let d = p - q;
-    if p - d == q && d + q == p { Some(d) } else { None }
-}
-
-/// orient2d from differences that are small integers times a power of two.
-#[inline(always)]
-pub fn orient2d_small(a: DVec2, b: DVec2, c: DVec2) -> Option<Sign> {
-    let differences = [
-        exact_difference(a.x, c.x)?,
-        exact_difference(a.y, c.y)?,
-        exact_difference(b.x, c.x)?,
-        exact_difference(b.y, c.y)?,
-    ];
-    let [ax, ay, bx, by] = scaled(differences, 30, to_small)?;
-    Some(Sign::of(ax * by - ay * bx))
-}
-
-/// incircle from differences that are small integers times a power of two.
-#[inline(always)]
-pub fn incircle_small(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Option<Sign> {
-    let differences = [
-        exact_difference(a.x, d.x)?,
-        exact_difference(a.y, d.y)?,
-        exact_difference(b.x, d.x)?,
-        exact_difference(b.y, d.y)?,
-        exact_difference(c.x, d.x)?,
-        exact_difference(c.y, d.y)?,
-    ];
-    let [ax, ay, bx, by, cx, cy] = scaled(differences, 30, to_small)?;
-    let term = |lifting: i64, minor: i64| i128::from(lifting) * i128::from(minor);
-    let value = term(ax * ax + ay * ay, bx * cy - cx * by)
-        + term(bx * bx + by * by, cx * ay - ax * cy)
-        + term(cx * cx + cy * cy, ax * by - bx * ay);
-    Some(Sign::of(value))
+fn minus(p: [i64; 2], q: [i64; 2]) -> [i64; 2] {
+    [p[0] - q[0], p[1] - q[1]]
 }
 
 #[inline(always)]
@@ -117,24 +89,55 @@ fn product(x: i64, y: i64) -> i128 {
     i128::from(x) * i128::from(y)
 }
 
-/// orient2d from coordinates that are integers of 61 bits times a power of two.
 #[inline(always)]
-pub fn orient2d_wide(a: DVec2, b: DVec2, c: DVec2) -> Option<Sign> {
-    let [ax, ay, bx, by, cx, cy] = scaled([a.x, a.y, b.x, b.y, c.x, c.y], 61, to_wide)?;
-    Some(Sign::of(product(ax - cx, by - cy) - product(ay - cy, bx - cx)))
+fn small_cross(p: [i64; 2], q: [i64; 2]) -> i64 {
+    p[0] * q[1] - p[1] * q[0]
 }
 
-/// incircle from coordinates that are integers of 61 bits times a power of two.
 #[inline(always)]
-pub fn incircle_wide(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Option<Sign> {
-    let [ax, ay, bx, by, cx, cy, dx, dy] = scaled([a.x, a.y, b.x, b.y, c.x, c.y, d.x, d.y], 61, to_wide)?;
-    let (ax, ay, bx, by, cx, cy) = (ax - dx, ay - dy, bx - dx, by - dy, cx - dx, cy - dy);
-    let lifting = |x: i64, y: i64| (product(x, x) + product(y, y)) as u128;
-    let minor = |px: i64, py: i64, qx: i64, qy: i64| product(px, qy) - product(qx, py);
-    let value = Wide::product(lifting(ax, ay), minor(bx, by, cx, cy))
-        .plus(Wide::product(lifting(bx, by), minor(cx, cy, ax, ay)))
-        .plus(Wide::product(lifting(cx, cy), minor(ax, ay, bx, by)));
-    Some(value.sign())
+fn wide_cross(p: [i64; 2], q: [i64; 2]) -> i128 {
+    product(p[0], q[1]) - product(p[1], q[0])
+}
+
+/// orient2d by machine integers, if the coordinates are multiples of a common power of two not too far below them.
+#[inline(always)]
+pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> Option<Sign> {
+    let rounded = Rounded::new([a, b, c])?;
+    if !all_zero(rounded.rest) {
+        return orient2d_wide(&rounded);
+    }
+    let [a, b, c] = rounded.integers;
+    Some(Sign::of(small_cross(minus(a, c), minus(b, c))))
+}
+
+#[inline(never)]
+fn orient2d_wide(rounded: &Rounded<3>) -> Option<Sign> {
+    let [a, b, c] = rounded.finer()?;
+    Some(Sign::of(wide_cross(minus(a, c), minus(b, c))))
+}
+
+/// incircle by machine integers, if the coordinates are multiples of a common power of two not too far below them.
+#[inline(always)]
+pub fn incircle(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Option<Sign> {
+    let rounded = Rounded::new([a, b, c, d])?;
+    if !all_zero(rounded.rest) {
+        return incircle_wide(&rounded);
+    }
+    let [a, b, c, d] = rounded.integers;
+    let (a, b, c) = (minus(a, d), minus(b, d), minus(c, d));
+    let term = |p: [i64; 2], q, r| product(p[0] * p[0] + p[1] * p[1], small_cross(q, r));
+    Some(Sign::of(term(a, b, c) + term(b, c, a) + term(c, a, b)))
+}
+
+#[inline(never)]
+fn incircle_wide(rounded: &Rounded<4>) -> Option<Sign> {
+    let [a, b, c, d] = rounded.finer()?;
+    let (a, b, c) = (minus(a, d), minus(b, d), minus(c, d));
+    let term = |p: [i64; 2], q, r| {
+        let lifting = product(p[0], p[0]) + product(p[1], p[1]);
+        Wide::product(lifting as u128, wide_cross(q, r))
+    };
+    Some(term(a, b, c).plus(term(b, c, a)).plus(term(c, a, b)).sign())
 }
 
 /// A signed integer of 256 bits, two's complement.
@@ -147,12 +150,14 @@ struct Wide {
 impl Wide {
     #[inline(always)]
     fn product(x: u128, y: i128) -> Self {
+        const LOW: u128 = u64::MAX as u128;
         let magnitude = y.unsigned_abs();
-        let (x1, x0) = (x >> 64, x & u128::from(u64::MAX));
-        let (y1, y0) = (magnitude >> 64, magnitude & u128::from(u64::MAX));
-        // x1 and y1 are below 2^61 here, so the middle sum cannot overflow.
-        let middle = x1 * y0 + x0 * y1 + ((x0 * y0) >> 64);
-        let low = (middle << 64) | ((x0 * y0) & u128::from(u64::MAX));
+        let (x1, x0) = (x >> 64, x & LOW);
+        let (y1, y0) = (magnitude >> 64, magnitude & LOW);
+        let lowest = x0 * y0;
+        // x1 and y1 are below 2^59 here, so the sum cannot overflow.
+        let middle = x1 * y0 + x0 * y1 + (lowest >> 64);
+        let low = (middle << 64) | (lowest & LOW);
         let high = (x1 * y1 + (middle >> 64)) as i128;
         if y < 0 { Self { high: !high + i128::from(low == 0), low: low.wrapping_neg() } } else { Self { high, low } }
     }

@@ -124,17 +124,19 @@ pub fn incircle(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
 #[cold]
 #[inline(never)]
 fn orient2d_exact(a: DVec2, b: DVec2, c: DVec2) -> Sign {
-    integers::orient2d_small(a, b, c)
-        .or_else(|| integers::orient2d_wide(a, b, c))
-        .or_else(|| expansions::orient2d(a, b, c))
-        .unwrap_or_else(|| limbs::orient2d(a, b, c))
+    integers::orient2d(a, b, c).or_else(|| expansions::orient2d(a, b, c)).unwrap_or_else(|| limbs::orient2d(a, b, c))
 }
 
 #[cold]
 #[inline(never)]
 fn incircle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
-    integers::incircle_small(a, b, c, d)
-        .or_else(|| integers::incircle_wide(a, b, c, d))
+    incircle_undecided(a, b, c, d)
+}
+
+/// What the filter leaves. Inlined into each caller's cold path, since on a lattice every call comes here.
+#[inline(always)]
+fn incircle_undecided(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
+    integers::incircle(a, b, c, d)
         .or_else(|| expansions::incircle(a, b, c, d))
         .unwrap_or_else(|| limbs::incircle(a, b, c, d))
 }

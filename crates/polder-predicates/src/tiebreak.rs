@@ -72,7 +72,7 @@
 //! The end exists, is unique, and is reached by every sequence of flips from every start. It is the constrained
 //! Delaunay triangulation of `V` and `S` for the lifting `z`, and therefore one for the true lifting as well.
 
-use crate::{Sign, filter, incircle, orient2d};
+use crate::{Sign, filter, incircle_undecided, orient2d};
 use glam::DVec2;
 use std::cmp::Ordering;
 
@@ -95,7 +95,7 @@ pub fn lexicographic(a: DVec2, b: DVec2) -> Ordering {
     (a.x + 0.0).total_cmp(&(b.x + 0.0)).then_with(|| (a.y + 0.0).total_cmp(&(b.y + 0.0)))
 }
 
-/// [`incircle`] with the canonical tie-break: the sign for the perturbed lifting of the [module's docs](self).
+/// [`incircle`](crate::incircle) with the canonical tie-break: the sign for the perturbed lifting of the [module's docs](self).
 ///
 /// For `abc` counterclockwise, positive if `d` lies inside the circle, or on it in the sense of the tie-break. Zero only
 /// if two of the points are equal or all four lie on one line. Exchanging two points changes the sign.
@@ -121,7 +121,7 @@ pub fn incircle_canonical(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
 #[cold]
 #[inline(never)]
 fn incircle_canonical_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
-    let sign = incircle(a, b, c, d);
+    let sign = incircle_undecided(a, b, c, d);
     if sign != Sign::Zero {
         return sign;
     }
@@ -165,7 +165,7 @@ pub fn must_flip(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
 #[cold]
 #[inline(never)]
 fn must_flip_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> bool {
-    match crate::incircle_exact(a, b, c, d) {
+    match incircle_undecided(a, b, c, d) {
         Sign::Positive => true,
         Sign::Negative => false,
         Sign::Zero => {
