@@ -1,0 +1,82 @@
+//! The same input has the same digest, whatever the order of points and constraints, the number of threads, and the
+//! backend.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use polder::{Backend, Options, triangulate};
+use polder_mesh::{Pslg, Triangulation};
+use polder_tests::{canonical_digest, families, shuffled};
+
+fn with(pslg: &Pslg, backend: Backend, threads: usize, name: &str) -> Triangulation {
+    let mut options = Options::with_backend(backend);
+    options.threads = threads;
+    triangulate(pslg, &options).unwrap_or_else(|error| panic!("{name}: {error}")).triangulation
+}
+
+/// The families at a size, the two that take long by their nature at a tenth of it: numbers of every magnitude, and
+/// thousands of constraints along one line.
+fn sized(n: usize, seed: u64) -> Vec<(&'static str, Pslg)> {
+    let slow = ["mixed magnitudes", "collinear with constraints"];
+    let large = families(n, seed).into_iter().filter(|(name, _)| n < 5000 || !slow.contains(name));
+    let small = families(n / 10, seed).into_iter().filter(|(name, _)| n >= 5000 && slow.contains(name));
+    large.chain(small).collect()
+}
+
+const SIZES: [usize; 5] = [3, 5, 17, 100, 1000];
+
+#[test]
+fn threads_do_not_matter() {
+    for n in [17, 20_000] {
+        for (name, pslg) in sized(n, 1) {
+            let one = with(&pslg, Backend::Cpu, 1, name);
+            for threads in [2, 5] {
+                let more = with(&pslg, Backend::Cpu, threads, name);
+                assert_eq!(one.digest(), more.digest(), "{name}, {n} points, {threads} threads");
+                assert!(one == more, "{name}, {n} points, {threads} threads: chains or bits differ");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_order_of_points_and_constraints_does_not_matter() {
+    for n in SIZES {
+        for (name, pslg) in families(n, 2) {
+            let triangulation = with(&pslg, Backend::Cpu, 0, name);
+            let digest = canonical_digest(&pslg, triangulation.triangles());
+            assert_eq!(digest, triangulation.digest(), "{name}, {n} points: not in canonical order");
+            for seed in 0..3 {
+                let other = shuffled(&pslg, seed);
+                let back = other.digest_back(&with(&other.pslg, Backend::Cpu, 0, name));
+                assert_eq!(back, digest, "{name}, {n} points, shuffle {seed}");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_order_of_a_large_input_does_not_matter() {
+    for (name, pslg) in sized(20_000, 3) {
+        let other = shuffled(&pslg, 4);
+        let back = other.digest_back(&with(&other.pslg, Backend::Cpu, 0, name));
+        assert_eq!(back, with(&pslg, Backend::Cpu, 0, name).digest(), "{name}");
+    }
+}
+
+/// The chain of a constraint is the same set of places, wherever its points stand in the input.
+#[test]
+fn chains_move_along_with_their_points() {
+    for (name, pslg) in families(300, 5) {
+        let triangulation = with(&pslg, Backend::Cpu, 0, name);
+        let other = shuffled(&pslg, 6);
+        let moved = with(&other.pslg, Backend::Cpu, 0, name);
+        for (new, &old) in other.constraints.iter().enumerate() {
+            let mut there: Vec<_> = moved.chains().get(new).iter().map(|&v| other.pslg.points()[v as usize]).collect();
+            let here: Vec<_> =
+                triangulation.chains().get(old as usize).iter().map(|&v| pslg.points()[v as usize]).collect();
+            if here.first() != there.first() {
+                there.reverse();
+            }
+            assert_eq!(here, there, "{name}, constraint {old}");
+        }
+    }
+}
