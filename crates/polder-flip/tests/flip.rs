@@ -147,7 +147,7 @@ proptest! {
         let mut kept = Vec::new();
         for h in 0..3 * mesh.slots() as u32 {
             let (a, b) = (mesh.origin(h), mesh.destination(h));
-            if h < mesh.twin(h) && a != GHOST && b != GHOST && polder_flip::priority(h ^ seed) % 4 == 0 {
+            if h < mesh.twin(h) && a != GHOST && b != GHOST && polder_flip::priority(h ^ seed).is_multiple_of(4) {
                 mesh.set_constrained(h, true);
                 kept.push([a.min(b), a.max(b)]);
             }
