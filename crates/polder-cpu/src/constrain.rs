@@ -83,8 +83,12 @@ impl Delaunay {
         Ok((self.chains(&vertices, long), counts))
     }
 
-    /// The constraints' ends as vertices.
-    fn vertices_of(&self, constraints: &[Constraint]) -> Result<Vec<[u32; 2]>, CpuError> {
+    /// The constraints' ends as vertices of [`to_ghost_mesh`](Self::to_ghost_mesh).
+    ///
+    /// # Errors
+    ///
+    /// [`CpuError::IndexOutOfRange`] at the first constraint that names a point that does not exist.
+    pub fn vertices_of(&self, constraints: &[Constraint]) -> Result<Vec<[u32; 2]>, CpuError> {
         if constraints.is_empty() {
             return Ok(Vec::new());
         }

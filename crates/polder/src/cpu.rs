@@ -46,8 +46,14 @@ fn run(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
 /// Names all crossings: those that an insertion meets are not all there are, since two constraints that a third one
 /// stops never meet. So the constraints walk the mesh of the points alone.
 fn crossings(pslg: &Pslg, options: &Options) -> Result<Error, Error> {
-    let _ = (pslg, options);
-    Ok(Error::CrossingConstraints { pairs: Vec::new(), truncated: true })
+    use polder_constrain::reference::{crossings, walk};
+
+    let delaunay = Delaunay::new(pslg.points(), options.monitor()).map_err(typed)?;
+    let ends = delaunay.vertices_of(pslg.constraints()).map_err(typed)?;
+    let (mesh, positions, _) = delaunay.to_ghost_mesh();
+    drop(delaunay);
+    let walk = walk(&mesh, &positions, &ends)?;
+    Ok(crate::stages::crossing(crossings(&mesh, &positions, &walk, options.max_crossings)?))
 }
 
 fn typed(error: CpuError) -> Error {

@@ -1,4 +1,8 @@
+use polder_constrain::ConstrainError;
+use polder_dualize::DualizeError;
+use polder_flip::FlipError;
 use polder_mesh::{Cancelled, MeshError};
+use polder_voronoi::VoronoiError;
 use thiserror::Error;
 
 /// Why there is no triangulation.
@@ -62,6 +66,52 @@ impl Error {
             Self::BoundExceeded { .. } => "bound_exceeded",
             Self::Input(_) | Self::Internal { .. } => "internal",
             Self::Cancelled(_) => "cancelled",
+        }
+    }
+}
+
+impl From<VoronoiError> for Error {
+    fn from(error: VoronoiError) -> Self {
+        match error {
+            VoronoiError::GridSide { side, limit } => Self::Unsupported {
+                what: format!("a grid of {side} pixels a side: between 1 and {limit} are possible"),
+            },
+            VoronoiError::BoundExceeded { step, bound } => Self::BoundExceeded { stage: step, bound },
+            other => Self::Internal { stage: "voronoi", what: other.to_string() },
+        }
+    }
+}
+
+impl From<DualizeError> for Error {
+    fn from(error: DualizeError) -> Self {
+        match error {
+            DualizeError::Voronoi(error) => error.into(),
+            DualizeError::Flip(error) => error.into(),
+            DualizeError::BoundExceeded { stage, bound } => Self::BoundExceeded { stage, bound },
+            DualizeError::WalkLost { steps, .. } => Self::BoundExceeded { stage: "insert", bound: steps },
+            other => Self::Internal { stage: "dualize", what: other.to_string() },
+        }
+    }
+}
+
+impl From<FlipError> for Error {
+    fn from(error: FlipError) -> Self {
+        match error {
+            FlipError::BoundExceeded { stage, rounds, .. } => Self::BoundExceeded { stage, bound: rounds },
+            other => Self::Internal { stage: "flip", what: other.to_string() },
+        }
+    }
+}
+
+impl From<ConstrainError> for Error {
+    fn from(error: ConstrainError) -> Self {
+        match error {
+            ConstrainError::CrossingConstraints(crossings) => {
+                Self::CrossingConstraints { pairs: crossings.pairs, truncated: crossings.truncated }
+            }
+            ConstrainError::Flip(error) => error.into(),
+            ConstrainError::BoundExceeded { rounds, .. } => Self::BoundExceeded { stage: "constrain", bound: rounds },
+            other => Self::Internal { stage: "constrain", what: other.to_string() },
         }
     }
 }

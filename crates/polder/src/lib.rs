@@ -1,27 +1,69 @@
-//! The constrained Delaunay triangulation of a planar straight-line graph: exact, canonical, fast.
+//! The constrained Delaunay triangulation of points and segments in the plane: exact, canonical, fast.
+//!
+//! ```
+//! use polder::{DVec2, Options, Pslg, triangulate};
+//!
+//! let points = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0), (1.0, 1.0)].map(DVec2::from);
+//! let pslg = Pslg::new(points.to_vec(), vec![[0, 2]])?;
+//! let output = triangulate(&pslg, &Options::default())?;
+//! assert_eq!(output.triangulation.triangles(), [[0, 1, 2], [0, 2, 4], [0, 4, 3], [2, 3, 4]]);
+//! assert!(output.triangulation.edges().any(|edge| edge.constrained));
+//! # Ok::<(), polder::Error>(())
+//! ```
+//!
+//! # Promises
+//!
+//! 1. **Exact.** Every sign that geometry depends on is the true one, for every finite `f64`.
+//! 2. **Canonical.** The same input gives the same triangles, byte for byte: on every backend, with any number of
+//!    threads. Ties between cocircular points are broken by position, so that the order of the points does not matter
+//!    either.
+//! 3. **Nothing is lost silently.** Every point is a vertex or a [duplicate](Triangulation::duplicates) of one; every
+//!    constraint is a [chain](Triangulation::chain) of edges; constraints that cross are all named.
+//! 4. **It never panics or hangs.** Bad input is a typed [`Error`] with the index at fault; every loop has a bound;
+//!    [`Options::cancel`] stops it.
+//!
+//! The triangulation covers the convex hull of the points. No points, one, two, all equal, or all on one line: a valid
+//! empty triangulation.
+//!
+//! # Ways
+//!
+//! [`Backend::Cpu`] is the fast way on a CPU; [`Backend::Reference`] runs the stages of the GPU pipeline as plain Rust,
+//! and [`stages()`] shows all that they pass on to each other. [`verify`] checks any mesh, exactly.
 #![forbid(unsafe_code)]
 
 mod cpu;
 mod error;
 mod options;
+mod reference;
 mod report;
+mod stages;
+pub mod verify;
 
 pub use error::Error;
 pub use options::{Backend, Options, ProgressFn};
 pub use polder_mesh::{
-    Chains, ConstraintId, DVec2, Digest, EdgeId, MeshError, Progress, Pslg, TriangleId, Triangulation, VertexId,
+    Chains, ConstraintId, DVec2, Digest, Edge, EdgeId, MeshError, Progress, Pslg, TriangleId, Triangulation, VertexId,
 };
 pub use report::{ConstraintReport, Output, PointReport, Report, StageReport};
+pub use stages::{Stages, stages};
 
-/// Triangulates.
+/// Triangulates the whole convex hull of a PSLG's points, with every constraint as edges.
+///
+/// The result does not depend on the options: they choose the way, not the answer.
 ///
 /// # Errors
 ///
-/// See [`Error`].
+/// - [`Error::CrossingConstraints`] names all pairs of constraints that cross at a point inside both that is no vertex,
+///   up to [`Options::max_crossings`].
+/// - [`Error::Unsupported`] if the backend asked for, or the number of threads or pixels, cannot be had.
+/// - [`Error::Cancelled`] if the caller said so.
+/// - [`Error::BoundExceeded`] and [`Error::Internal`] are defects of polder, reported instead of a hang or a wrong answer.
 pub fn triangulate(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     match options.backend {
         Backend::Auto | Backend::Cpu => cpu::triangulate(pslg, options),
-        Backend::Reference => Err(Error::Unsupported { what: "the reference pipeline".into() }),
-        Backend::Vulkan => Err(Error::Unsupported { what: "the Vulkan backend is not there yet; use the CPU".into() }),
+        Backend::Reference => reference::triangulate(pslg, options),
+        Backend::Vulkan => {
+            Err(Error::Unsupported { what: "there is no Vulkan backend yet; use the backend cpu".into() })
+        }
     }
 }

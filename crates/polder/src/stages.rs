@@ -1,0 +1,178 @@
+//! The stages' references in order, with everything that they pass on to each other.
+
+use crate::report::Stopwatch;
+use crate::{Error, Options};
+use polder_constrain::{Crossings, InsertReport, Walk};
+use polder_dualize::{Dualized, Inserted, Shifted};
+use polder_flip::FlipReport;
+use polder_mesh::{Chains, DVec2, GhostMesh, Parts, Pslg, Triangulation};
+use polder_voronoi::Resolution;
+
+/// What each stage made of one input, and the result.
+///
+/// All meshes number their vertices as [`Sites::order`](polder_voronoi::Sites::order) does: sites in pixel order, then
+/// the missing points. `stages` runs on one thread; it is there to look at, to test and to teach.
+#[derive(Clone, Debug)]
+pub struct Stages {
+    /// Stage 1: the grid, the sites and the digital Voronoi diagram, debris recolored.
+    pub voronoi: polder_voronoi::reference::Output,
+    /// Stage 2: the triangulation of the sites at their pixel centers.
+    pub dualized: Dualized,
+    /// Stage 3: the triangulation of the sites that are left, at their true positions.
+    pub shifted: Shifted,
+    /// Stage 4: the triangulation of all distinct points.
+    pub inserted: Inserted,
+    /// Stage 6, first step: the constraints cut at vertices, and the vertices along each.
+    pub walk: Walk,
+    /// Stage 6: the triangulation with every constraint in it.
+    pub constrained: GhostMesh,
+    /// What inserting the constraints did.
+    pub insertion: InsertReport,
+    /// Stage 5: the constrained Delaunay triangulation.
+    pub flipped: GhostMesh,
+    /// The flips that led to it.
+    pub flips: FlipReport,
+    /// The pixel centers of the sites: the positions of the dualized mesh.
+    pub centers: Vec<DVec2>,
+    /// The positions of all points in the renumbering: those of every other mesh.
+    pub positions: Vec<DVec2>,
+    /// The result.
+    pub triangulation: Triangulation,
+}
+
+/// Runs the stages' references in order. `None` if there are no points.
+///
+/// # Errors
+///
+/// Those of [`triangulate`](crate::triangulate).
+pub fn stages(pslg: &Pslg, options: &Options) -> Result<Option<Stages>, Error> {
+    run(pslg, options, &mut Stopwatch::start())
+}
+
+const STAGES: u64 = 7;
+
+pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Result<Option<Stages>, Error> {
+    use polder_constrain::reference as constrain;
+    use polder_dualize::reference as dualize;
+
+    if pslg.points().is_empty() {
+        return Ok(None);
+    }
+    let monitor = options.monitor();
+    let resolution = match options.grid {
+        Some(side) => Resolution::LongerSide(side).into(),
+        None => polder_voronoi::Options::default(),
+    };
+    monitor.step("voronoi", 0, STAGES)?;
+    let voronoi = polder_voronoi::reference::diagram(pslg.points(), &resolution)?;
+    let counts = voronoi.counts;
+    watch.stage(
+        "voronoi",
+        [
+            ("pixels", counts.pixels),
+            ("sites", counts.sites),
+            ("missing_points", counts.missing),
+            ("debris_pixels", counts.debris),
+            ("rounds", counts.debris_rounds + counts.recolor_rounds),
+        ],
+    );
+
+    let sites = &voronoi.sites;
+    let positions: Vec<DVec2> = sites.order.iter().map(|&i| pslg.points()[i as usize]).collect();
+    let centers: Vec<DVec2> =
+        sites.pixels[..sites.count].iter().map(|pixel| voronoi.mapping.center(pixel.map(u32::from))).collect();
+
+    monitor.step("dualize", 1, STAGES)?;
+    let dualized = dualize::dualize(&voronoi.diagram, sites)?;
+    watch.stage("dualize", [("necks", dualized.necks), ("hull_flips", dualized.hull.flips)]);
+
+    monitor.step("shift", 2, STAGES)?;
+    let shifted = dualize::shift(dualized.mesh.clone(), &centers, &positions)?;
+    watch.stage(
+        "shift",
+        [
+            ("bad_cases", shifted.bad as u64),
+            ("taken_out", shifted.taken_out().count() as u64),
+            ("rounds", shifted.rounds.iter().sum()),
+            ("hull_flips", shifted.hull.flips),
+        ],
+    );
+
+    monitor.step("insert", 3, STAGES)?;
+    let (missing, starts) = dualize::points_to_insert(&voronoi.diagram, sites, &shifted);
+    let inserted = dualize::insert(shifted.mesh.clone(), &positions, &missing, &starts)?;
+    watch.stage(
+        "insert",
+        [
+            ("inserted", inserted.inserted),
+            ("duplicates", inserted.duplicates),
+            ("rounds", inserted.rounds),
+            ("flips", inserted.flips.flips),
+            ("hull_flips", inserted.hull.flips),
+        ],
+    );
+
+    monitor.step("constrain", 4, STAGES)?;
+    let ends = vertices_of(pslg, &voronoi.sites.order, &inserted.vertex_of);
+    let walk = constrain::walk(&inserted.mesh, &positions, &ends)?;
+    let crossings = constrain::crossings(&inserted.mesh, &positions, &walk, options.max_crossings)?;
+    if !crossings.pairs.is_empty() || crossings.truncated {
+        return Err(crossing(crossings));
+    }
+    let constrained = inserted.mesh.clone();
+    let insertion = if walk.sub_constraints.is_empty() {
+        InsertReport::default()
+    } else {
+        return Err(Error::Unsupported { what: "constraints in the reference pipeline, yet".into() });
+    };
+    watch.stage(
+        "constrain",
+        [
+            ("pieces", insertion.sub_constraints),
+            ("intersections", insertion.intersections),
+            ("rounds", insertion.inner_rounds),
+            ("outer_rounds", insertion.outer_rounds),
+            ("flips", insertion.all_flips()),
+        ],
+    );
+
+    monitor.step("flip", 5, STAGES)?;
+    let mut flipped = constrained.clone();
+    let flips = polder_flip::reference::flip(&mut flipped, &positions)?;
+    watch.stage("flip", [("rounds", flips.rounds), ("flips", flips.flips), ("tests", flips.tests)]);
+
+    monitor.step("canonical_order", 6, STAGES)?;
+    let names = inserted.names(&voronoi.sites.order);
+    let representatives = inserted.representatives(&voronoi.sites.order, &names);
+    let mut chains: Chains = walk.chains.clone();
+    chains.rename(&names);
+    let triangulation = Triangulation::from_mesh(&flipped, &names, Parts { representatives, chains });
+    watch.stage("canonical_order", []);
+    Ok(Some(Stages {
+        voronoi,
+        dualized,
+        shifted,
+        inserted,
+        walk,
+        constrained,
+        insertion,
+        flipped,
+        flips,
+        centers,
+        positions,
+        triangulation,
+    }))
+}
+
+/// The constraints' ends as vertices of the mesh.
+fn vertices_of(pslg: &Pslg, order: &[u32], vertex_of: &[u32]) -> Vec<[u32; 2]> {
+    let mut vertex = vec![0; order.len()];
+    for (&input, &v) in order.iter().zip(vertex_of) {
+        vertex[input as usize] = v;
+    }
+    pslg.constraints().iter().map(|ends| ends.map(|end| vertex[end as usize])).collect()
+}
+
+pub(crate) fn crossing(crossings: Crossings) -> Error {
+    Error::CrossingConstraints { pairs: crossings.pairs, truncated: crossings.truncated }
+}
