@@ -24,13 +24,10 @@ fn main() -> Result<(), VoronoiError> {
     let output = reference::diagram(&points, &Resolution::LongerSide(28).into())?;
     let (mapping, sites, counts) = (&output.mapping, &output.sites, &output.counts);
 
-    println!("{} points on {} x {} pixels", counts.points, mapping.width(), mapping.height());
-    for (site, (&point, &[x, y])) in sites.order.iter().zip(&sites.pixels).enumerate() {
-        let center = mapping.center([x, y].map(u32::from));
-        let kind = if site < sites.count { "site" } else { "missing" };
-        println!("{kind} {site}: point {point}, pixel {x} {y}, its center {center}");
+    println!("{mapping}\n{sites}\n{}\n{counts}", output.diagram.letters(sites));
+    for (&point, &pixel) in sites.order.iter().zip(&sites.pixels).take(3) {
+        let center = mapping.center(pixel.map(u32::from));
+        println!("point {point} at {} has the pixel with center {center}", points[point as usize]);
     }
-    println!("\n{}", output.diagram.letters(sites));
-    println!("{} debris pixels, recolored in {} rounds", counts.debris, counts.recolor_rounds);
     Ok(())
 }

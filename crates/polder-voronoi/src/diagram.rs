@@ -20,18 +20,22 @@ pub struct Diagram {
 }
 
 impl Diagram {
-    /// The index of a pixel in [`Diagram::colors`].
+    /// The index of a pixel of the grid in [`Diagram::colors`].
     pub fn index(&self, [x, y]: [u16; 2]) -> usize {
         usize::from(y) * self.width as usize + usize::from(x)
     }
 
-    /// The pixel at an index of [`Diagram::colors`].
+    /// The pixel at an index of [`Diagram::colors`], of which there must be some.
     pub fn pixel(&self, index: usize) -> [u16; 2] {
         let width = self.width as usize;
         [(index % width) as u16, (index / width) as u16]
     }
 
     /// The color of a pixel.
+    ///
+    /// # Panics
+    ///
+    /// If the pixel does not lie in the grid.
     pub fn color(&self, pixel: [u16; 2]) -> u32 {
         self.colors[self.index(pixel)]
     }

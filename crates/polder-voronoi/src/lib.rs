@@ -37,3 +37,7 @@ pub use mapping::{GridMapping, MAX_SIDE, Options, Resolution};
 pub use order::Key;
 pub use sites::Sites;
 pub use text::Letters;
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -155,9 +155,9 @@ impl GridMapping {
     /// The point's coordinates must not be NaN.
     pub fn pixel(&self, point: DVec2) -> [u32; 2] {
         let of = |axis: Axis, x: f64| {
-            let from_start = i128::from(floor_units(x, self.exponent)) - i128::from(axis.translation);
-            let pixel = from_start.div_euclid(i128::from(2 * self.half));
-            pixel.clamp(0, i128::from(axis.pixels) - 1) as u32
+            // No overflow: at most 2^62, and 2^54.
+            let from_start = floor_units(x, self.exponent) - axis.translation;
+            from_start.div_euclid(2 * self.half).clamp(0, i64::from(axis.pixels) - 1) as u32
         };
         [of(self.axes[0], point.x), of(self.axes[1], point.y)]
     }

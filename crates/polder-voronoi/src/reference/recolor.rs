@@ -20,8 +20,8 @@ use std::collections::BinaryHeap;
 ///
 /// # Errors
 ///
-/// Those of [`Sites::check`] and [`Diagram::check`]. [`VoronoiError::BoundExceeded`] if a round colors nothing, which
-/// cannot happen after [`crate::reference::debris`].
+/// Those of [`Sites::check`] and [`Diagram::check`], and a [`VoronoiError::Mismatch`] if there are pixels that no color
+/// reaches, which cannot happen after [`crate::reference::debris`].
 pub fn recolor(diagram: &mut Diagram, sites: &Sites) -> Result<u64, VoronoiError> {
     sites.check()?;
     diagram.check(sites)?;
@@ -46,6 +46,9 @@ pub fn recolor(diagram: &mut Diagram, sites: &Sites) -> Result<u64, VoronoiError
         };
         let winners: Vec<usize> =
             left.iter().enumerate().filter(|&entry| wins(entry)).map(|(place, _)| place).collect();
+        if winners.is_empty() {
+            return Err(unreached(left[0]));
+        }
         for &place in &winners {
             diagram.colors[left[place] as usize] = best[place].1;
         }
@@ -85,8 +88,7 @@ fn best_candidate(diagram: &Diagram, sites: &Sites, index: usize) -> (Key, u32) 
 ///
 /// # Errors
 ///
-/// Those of [`Sites::check`] and [`Diagram::check`]. [`VoronoiError::BoundExceeded`] if a pixel is left without a
-/// color, which cannot happen after [`crate::reference::debris`].
+/// As for [`recolor`].
 pub fn recolor_by_queue(diagram: &mut Diagram, sites: &Sites) -> Result<u64, VoronoiError> {
     sites.check()?;
     diagram.check(sites)?;
@@ -116,8 +118,12 @@ pub fn recolor_by_queue(diagram: &mut Diagram, sites: &Sites) -> Result<u64, Vor
             }
         }
     }
-    match diagram.debris.iter().all(|&index| diagram.colors[index as usize] != UNCOLORED) {
-        true => Ok(pairs),
-        false => Err(VoronoiError::BoundExceeded { step: "recoloring debris by a queue", bound: pairs }),
+    match diagram.debris.iter().find(|&&index| diagram.colors[index as usize] == UNCOLORED) {
+        Some(&index) => Err(unreached(index)),
+        None => Ok(pairs),
     }
+}
+
+fn unreached(index: u32) -> VoronoiError {
+    VoronoiError::Mismatch { what: "debris that no color reaches", index: index as usize }
 }
