@@ -4,7 +4,7 @@
 
 use polder::{Backend, Options, triangulate};
 use polder_mesh::{Pslg, Triangulation};
-use polder_tests::{canonical_digest, families, shuffled};
+use polder_tests::{canonical_digest, families, point_families, shuffled};
 
 fn with(pslg: &Pslg, backend: Backend, threads: usize, name: &str) -> Triangulation {
     let mut options = Options::with_backend(backend);
@@ -59,6 +59,21 @@ fn the_order_of_a_large_input_does_not_matter() {
         let other = shuffled(&pslg, 4);
         let back = other.digest_back(&with(&other.pslg, Backend::Cpu, 0, name));
         assert_eq!(back, with(&pslg, Backend::Cpu, 0, name).digest(), "{name}");
+    }
+}
+
+fn same_on_both(name: &str, pslg: &Pslg) {
+    let [cpu, reference] = [Backend::Cpu, Backend::Reference].map(|backend| with(pslg, backend, 0, name));
+    assert_eq!(cpu.digest(), reference.digest(), "{name}, {} points", pslg.points().len());
+    assert!(cpu == reference, "{name}, {} points: chains or bits differ", pslg.points().len());
+}
+
+#[test]
+fn the_backend_does_not_matter_for_points() {
+    for n in SIZES {
+        for (name, pslg) in point_families(n, 7) {
+            same_on_both(name, &pslg);
+        }
     }
 }
 
