@@ -1,22 +1,37 @@
 //! Recoloring debris, so that the diagram becomes that of flooding: [QCT] Appendix A.
 //!
-//! The *candidates* of an uncolored pixel A are the colors i of its colored neighbors B with (B, i) before (A, i) in
-//! the order of [`Key`]; the best one is that with the smallest (A, i). In rounds ([`recolor`]):
+//! The *candidates* of a debris pixel A are the colors i of its neighbors B with (B, i) before (A, i) in the order of
+//! [`Key`]; the best one is that with the smallest (A, i). In rounds ([`recolor`]):
 //!
-//! 1. Every uncolored pixel finds its best candidate.
-//! 2. A pixel whose best candidate comes before those of all its uncolored neighbors takes that color.
-//! 3. Repeat over the pixels that are left, until none is.
+//! 1. Every active pixel, at first all debris, finds its best candidate among the colors that the last round left.
+//! 2. All of them take what they found at once.
+//! 3. The debris around pixels that changed is active in the next round. Repeat until none is.
 //!
-//! Departure: [QCT]'s Algorithm A.1 takes the pixels from one priority queue; it stands here as [`recolor_by_queue`].
-//! The rounds give the same colors: the queue colors pixels in ascending order, so what a pixel can still be offered
-//! comes after what its neighbors take; a pixel that is a minimum among its neighbors has nothing better to wait for.
+//! Departure: [QCT]'s Algorithm A.1 takes the pixels from a priority queue, each once; it stands here as
+//! [`recolor_by_queue`]. In the rounds a pixel may change its color again, and the result is the same:
+//!
+//! - *When no round changes anything, the diagram is that of flooding.* Flooding gives each debris pixel its best
+//!   candidate: by [CET]'s Ordered Coloring Lemma whoever is colored later, and offers a color then, offers it with a
+//!   larger key. And only one coloring gives each debris pixel its best candidate: of the pixels where two such
+//!   colorings differ take the one with the smallest key in either; the neighbor that it has this key from has a
+//!   smaller one, so both colorings agree there, and both offer the same, a contradiction.
+//! - *Rounds come to an end.* Of the debris in the order of its final keys let the first r - 1 be settled. An offer to
+//!   the next one that is better than its final key comes from a chain of pixels of one color, not settled, with
+//!   falling keys, each of which had it from the next a round earlier; a chain is no longer than the debris. So m
+//!   pixels are settled after m (m + 1) rounds.
+//!
+//! Measured, against rounds in which a pixel takes its best candidate for good when this comes before those of all its
+//! uncolored neighbors (the same result on all grids tried, but not proven): on a million points on a circle, 18,000
+//! pixels of debris, 29 rounds and 33,000 searches for a candidate instead of 73 rounds; on four million, 54,000
+//! pixels, 55 rounds instead of 120.
 
 use crate::order::{Key, neighbors};
 use crate::{Diagram, Sites, UNCOLORED, VoronoiError};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-/// Colors the pixels listed in [`Diagram::debris`] in rounds. Returns the number of rounds.
+/// Colors the pixels listed in [`Diagram::debris`], in rounds. Returns the number of rounds, the last of which changes
+/// nothing; 0 without debris.
 ///
 /// # Errors
 ///
@@ -25,55 +40,32 @@ use std::collections::BinaryHeap;
 pub fn recolor(diagram: &mut Diagram, sites: &Sites) -> Result<u64, VoronoiError> {
     sites.check()?;
     diagram.check(sites)?;
-    let mut left = diagram.debris.clone();
-    left.retain(|&index| diagram.colors[index as usize] == UNCOLORED);
-    let bound = left.len() as u64;
-    // The best candidate of each pixel of `left`; others are never asked for.
-    let mut best = vec![(Key::MAX, UNCOLORED); left.len()];
-    let mut slot = Slots::new(&left);
+    let mut active = diagram.debris.clone();
+    let mut found: Vec<u32> = Vec::with_capacity(active.len());
+    let debris = active.len() as u64;
+    let bound = debris.saturating_mul(debris + 1) + 1;
     for round in 0..=bound {
-        if left.is_empty() {
-            return Ok(round);
+        if active.is_empty() {
+            return all_colored(diagram).map(|()| round);
         }
-        for (best, &index) in best.iter_mut().zip(&left) {
-            *best = best_candidate(diagram, sites, index as usize);
+        found.clear();
+        found.extend(active.iter().map(|&index| best_candidate(diagram, sites, index as usize)));
+        let mut next: Vec<u32> = Vec::new();
+        for (&index, &color) in active.iter().zip(&found) {
+            if std::mem::replace(&mut diagram.colors[index as usize], color) != color {
+                let around = neighbors(diagram, diagram.pixel(index as usize)).map(|p| diagram.index(p) as u32);
+                next.extend(around.filter(|index| diagram.debris.binary_search(index).is_ok()));
+            }
         }
-        let wins = |(place, &index): (usize, &u32)| {
-            let own = best[place].0;
-            let pixel = diagram.pixel(index as usize);
-            let mut rivals = neighbors(diagram, pixel).filter_map(|p| slot.of(diagram.index(p) as u32));
-            own < Key::MAX && rivals.all(|rival| own < best[rival].0)
-        };
-        let winners: Vec<usize> =
-            left.iter().enumerate().filter(|&entry| wins(entry)).map(|(place, _)| place).collect();
-        if winners.is_empty() {
-            return Err(unreached(left[0]));
-        }
-        for &place in &winners {
-            diagram.colors[left[place] as usize] = best[place].1;
-        }
-        left.retain(|&index| diagram.colors[index as usize] == UNCOLORED);
-        best.truncate(left.len());
-        slot = Slots::new(&left);
+        next.sort_unstable();
+        next.dedup();
+        active = next;
     }
     Err(VoronoiError::BoundExceeded { step: "recoloring debris", bound })
 }
 
-/// Where a pixel stands in an ascending list.
-struct Slots(Vec<u32>);
-
-impl Slots {
-    fn new(list: &[u32]) -> Self {
-        Self(list.to_vec())
-    }
-
-    fn of(&self, index: u32) -> Option<usize> {
-        self.0.binary_search(&index).ok()
-    }
-}
-
-/// The best color on offer to an uncolored pixel, with its key, or the largest key where there is none.
-fn best_candidate(diagram: &Diagram, sites: &Sites, index: usize) -> (Key, u32) {
+/// The best color on offer to a debris pixel, or [`UNCOLORED`] where there is none.
+fn best_candidate(diagram: &Diagram, sites: &Sites, index: usize) -> u32 {
     let pixel = diagram.pixel(index);
     let offers = neighbors(diagram, pixel).filter_map(|neighbor| {
         let color = diagram.color(neighbor);
@@ -81,10 +73,18 @@ fn best_candidate(diagram: &Diagram, sites: &Sites, index: usize) -> (Key, u32) 
         let key = Key::of(pixel, site);
         (Key::of(neighbor, site) < key).then_some((key, color))
     });
-    offers.min().unwrap_or((Key::MAX, UNCOLORED))
+    offers.min().map_or(UNCOLORED, |(_, color)| color)
 }
 
-/// Colors the pixels listed in [`Diagram::debris`] by [QCT]'s Algorithm A.1. Returns how many pairs the queue took.
+fn all_colored(diagram: &Diagram) -> Result<(), VoronoiError> {
+    match diagram.debris.iter().find(|&&index| diagram.colors[index as usize] == UNCOLORED) {
+        Some(&index) => Err(VoronoiError::Mismatch { what: "debris that no color reaches", index: index as usize }),
+        None => Ok(()),
+    }
+}
+
+/// Colors the uncolored pixels listed in [`Diagram::debris`] by [QCT]'s Algorithm A.1. Returns how many pairs it took
+/// from the queue.
 ///
 /// # Errors
 ///
@@ -94,8 +94,8 @@ pub fn recolor_by_queue(diagram: &mut Diagram, sites: &Sites) -> Result<u64, Vor
     diagram.check(sites)?;
     let mut queue = BinaryHeap::new();
     let mut pairs = 0;
-    for place in 0..diagram.debris.len() {
-        let pixel = diagram.pixel(diagram.debris[place] as usize);
+    for &index in &diagram.debris {
+        let pixel = diagram.pixel(index as usize);
         for neighbor in neighbors(diagram, pixel).filter(|&p| diagram.color(p) != UNCOLORED) {
             let color = diagram.color(neighbor);
             let site = sites.pixels[color as usize];
@@ -118,12 +118,5 @@ pub fn recolor_by_queue(diagram: &mut Diagram, sites: &Sites) -> Result<u64, Vor
             }
         }
     }
-    match diagram.debris.iter().find(|&&index| diagram.colors[index as usize] == UNCOLORED) {
-        Some(&index) => Err(unreached(index)),
-        None => Ok(pairs),
-    }
-}
-
-fn unreached(index: u32) -> VoronoiError {
-    VoronoiError::Mismatch { what: "debris that no color reaches", index: index as usize }
+    all_colored(diagram).map(|()| pairs)
 }

@@ -1,7 +1,7 @@
 //! Debris, and recoloring it three ways.
 
 use crate::cases::{self, FAMILIES, Family, neighbors, pixels, sites};
-use polder_voronoi::{Diagram, Sites, UNCOLORED, reference};
+use polder_voronoi::{Diagram, Key, Sites, UNCOLORED, reference};
 use proptest::prelude::*;
 
 /// By definition: the pixels that no path of their own color connects with their site. Ascending.
@@ -20,6 +20,36 @@ pub(crate) fn cut_off(diagram: &Diagram, sites: &Sites) -> Vec<u32> {
     (0..reached.len() as u32).filter(|&index| !reached[index as usize]).collect()
 }
 
+/// A third way to recolor: rounds in which an uncolored pixel takes its best candidate for good when that comes before
+/// the best candidates of all its uncolored neighbors. Returns the number of rounds.
+fn recolor_by_minima(diagram: &mut Diagram, sites: &Sites) -> usize {
+    let best = |diagram: &Diagram, pixel: [u16; 2]| {
+        let colored = neighbors(sites.size, pixel).filter(|&p| diagram.color(p) != UNCOLORED);
+        let offers = colored.map(|p| (p, diagram.color(p), sites.pixels[diagram.color(p) as usize]));
+        let closer = offers.filter(|&(p, _, site)| Key::of(p, site) < Key::of(pixel, site));
+        closer.map(|(_, color, site)| (Key::of(pixel, site), color)).min().unwrap_or((Key::MAX, UNCOLORED))
+    };
+    for round in 0.. {
+        let left: Vec<[u16; 2]> = diagram.debris.iter().map(|&index| diagram.pixel(index as usize)).collect();
+        let left: Vec<[u16; 2]> = left.into_iter().filter(|&pixel| diagram.color(pixel) == UNCOLORED).collect();
+        let is_minimum = |pixel: [u16; 2]| {
+            let mut rivals = neighbors(sites.size, pixel).filter(|&p| diagram.color(p) == UNCOLORED);
+            rivals.all(|rival| best(diagram, pixel).0 < best(diagram, rival).0)
+        };
+        let winners: Vec<[u16; 2]> = left.iter().copied().filter(|&pixel| is_minimum(pixel)).collect();
+        if winners.is_empty() {
+            assert!(left.is_empty());
+            return round;
+        }
+        let colors: Vec<u32> = winners.iter().map(|&pixel| best(diagram, pixel).1).collect();
+        for (&pixel, color) in winners.iter().zip(colors) {
+            let index = diagram.index(pixel);
+            diagram.colors[index] = color;
+        }
+    }
+    unreachable!("the loop above ends by returning")
+}
+
 /// Checks every step on one grid. Returns how much debris there was.
 fn assert_steps_agree(sites: &Sites) -> usize {
     let euclidean = reference::color(sites).unwrap();
@@ -31,11 +61,15 @@ fn assert_steps_agree(sites: &Sites) -> usize {
         assert_eq!(after, if is_debris { UNCOLORED } else { before });
     }
     let (mut by_rounds, mut by_queue) = (broken.clone(), broken.clone());
+    let mut by_minima = broken.clone();
     let rounds = reference::recolor(&mut by_rounds, sites).unwrap();
     reference::recolor_by_queue(&mut by_queue, sites).unwrap();
+    recolor_by_minima(&mut by_minima, sites);
     assert_eq!(by_rounds, by_queue);
+    assert_eq!(by_rounds, by_minima);
     assert_eq!(by_rounds.colors, reference::flooding::flood(sites).unwrap().diagram.colors);
-    assert!(rounds <= broken.debris.len() as u64);
+    assert_eq!(rounds == 0, broken.debris.is_empty());
+    assert!(rounds <= broken.debris.len() as u64 + 1, "{rounds} rounds");
     assert!(cut_off(&by_rounds, sites).is_empty());
     by_rounds.check(sites).unwrap();
     broken.debris.len()
@@ -45,7 +79,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
-    fn recoloring_equals_the_queue_equals_flooding(family in 0..FAMILIES.len(), side in 8_usize..48, seed: u64) {
+    fn recoloring_in_rounds_equals_the_queue_equals_flooding(family in 0..FAMILIES.len(), side in 8_usize..48, seed: u64) {
         assert_steps_agree(&sites(FAMILIES[family], side, seed));
     }
 
@@ -94,7 +128,7 @@ fn recoloring_twice_changes_nothing() {
     reference::recolor(&mut diagram, &sites).unwrap();
     let once = diagram.clone();
     assert!(!once.debris.is_empty());
-    assert_eq!(reference::recolor(&mut diagram, &sites).unwrap(), 0);
+    assert_eq!(reference::recolor(&mut diagram, &sites).unwrap(), 1);
     assert_eq!(diagram, once);
 }
 
@@ -123,5 +157,23 @@ fn recoloring_equals_flooding_on_many_grids() {
         for family in cases::SHARP {
             assert_steps_agree(&sites(family, 8 + seed as usize % 60, seed));
         }
+    }
+}
+
+/// Recoloring forgets wrong colors: it ends in the same diagram from whatever colors the debris has at first.
+#[test]
+fn recoloring_forgets_what_colors_debris_had() {
+    for seed in 0..20 {
+        let sites = sites(Family::Circle, 80, seed);
+        let mut diagram = reference::color(&sites).unwrap();
+        reference::debris(&mut diagram, &sites).unwrap();
+        let mut random = cases::Random(seed);
+        let mut spoilt = diagram.clone();
+        for &index in &diagram.debris {
+            spoilt.colors[index as usize] = random.below(sites.count) as u32;
+        }
+        reference::recolor(&mut diagram, &sites).unwrap();
+        reference::recolor(&mut spoilt, &sites).unwrap();
+        assert_eq!(spoilt, diagram);
     }
 }
