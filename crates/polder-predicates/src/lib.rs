@@ -140,3 +140,7 @@ fn incircle_undecided(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
         .or_else(|| expansions::incircle(a, b, c, d))
         .unwrap_or_else(|| limbs::incircle(a, b, c, d))
 }
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

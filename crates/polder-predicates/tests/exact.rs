@@ -12,7 +12,17 @@ use proptest::prelude::*;
 
 #[test]
 fn every_family_has_the_exact_signs() {
-    for family in families(1500, 1) {
+    check_families(1500, 1);
+}
+
+#[test]
+#[ignore = "long: cargo xtask ci --long"]
+fn every_family_has_the_exact_signs_long() {
+    check_families(100_000, 7);
+}
+
+fn check_families(n: usize, seed: u64) {
+    for family in families(n, seed) {
         let (mut naive_orient2d_errors, mut naive_incircle_errors) = (0, 0);
         for &[a, b, c, d] in &family.quadruples {
             let orientation = exact_orient2d([a, b, c]);

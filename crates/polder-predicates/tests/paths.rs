@@ -174,6 +174,7 @@ fn the_number_of_limbs_follows_the_points_of_the_call() {
         (span.bits, span.orient2d_limbs(), span.incircle_limbs())
     };
     assert_eq!(limbs(&[dvec2(0.0, -0.0)]), (0, 1, 1));
+    assert_eq!(limbs(&[dvec2(63.0, 0.0)]), (6, 1, 2));
     assert_eq!(limbs(&[dvec2(4095.0, 17.0), dvec2(-4000.0, 0.0)]), (12, 1, 2));
     assert_eq!(limbs(&[dvec2(1.0, 1.0 + f64::EPSILON)]), (53, 4, 7));
     // One stray coordinate makes its own calls long, and no others.
