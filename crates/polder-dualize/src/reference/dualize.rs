@@ -43,7 +43,7 @@
 
 use super::certify::certify;
 use super::corners::{Corner, Kind, colors, kind};
-use crate::{Dualized, DualizeError};
+use crate::{DualizeError, Dualized};
 use glam::DVec2;
 use polder_flip::reference::close_hull;
 use polder_mesh::{GHOST, GhostMesh, NONE};
@@ -150,7 +150,10 @@ fn check(diagram: &Diagram, sites: &Sites) -> Result<(), DualizeError> {
         return mismatch("more sites than points", sites.count);
     }
     if diagram.colors.len() != diagram.width as usize * diagram.height as usize {
-        return mismatch("a diagram with a number of pixels that is not its width times its height", diagram.colors.len());
+        return mismatch(
+            "a diagram with a number of pixels that is not its width times its height",
+            diagram.colors.len(),
+        );
     }
     match diagram.colors.iter().position(|&c| c as usize >= sites.count) {
         Some(pixel) => mismatch("a pixel without the color of a site", pixel),

@@ -6,7 +6,7 @@
 //!    in, the two triangles of the edge that it lies on, or outside the hull the ghost triangle of its sector (module
 //!    `sector`). A point on a vertex is a duplicate of it, and done.
 //! 2. Each point claims its container with its key (module `key`); the least key gets a triangle. Points on edges go
-//!    first, since they need two triangles, then those nearest to the container's center.
+//!    first, since they need two triangles, then those nearest to the container's center, or highest above the hull.
 //! 3. A point that got all it claimed is inserted; the new triangles of the point of rank `r` in this round, counted
 //!    among its winners in the order of the points, are the two slots after the last one and `2 r` more.
 //! 4. Ghost flips until the hull is convex again.
@@ -26,7 +26,7 @@
 use super::bootstrap::{Start, bootstrap};
 use super::certify::certify;
 use super::graft::{into_edge, into_triangle};
-use super::key::key;
+use super::key::Key;
 use super::locate::{Place, Walk};
 use super::sector::{Center, sector};
 use super::star::broken;
@@ -63,12 +63,7 @@ enum Container {
 ///
 /// [`DualizeError::Mismatch`] if `points` and `starts` differ in length or name a point without a position. Every other
 /// error means that the mesh was not a triangulation as above.
-pub fn insert(
-    mesh: GhostMesh,
-    positions: &[DVec2],
-    points: &[u32],
-    starts: &[u32],
-) -> Result<Inserted, DualizeError> {
+pub fn insert(mesh: GhostMesh, positions: &[DVec2], points: &[u32], starts: &[u32]) -> Result<Inserted, DualizeError> {
     check(&mesh, positions, points, starts)?;
     let mut out = Inserted { vertex_of: (0..positions.len() as u32).collect(), ..Inserted::default() };
     if positions.is_empty() {
@@ -122,8 +117,7 @@ impl Round<'_> {
     fn run(&mut self, out: &mut Inserted, waiting: Vec<Waiting>) -> Result<Vec<Waiting>, DualizeError> {
         let (claimants, containers) = self.locate(out, waiting)?;
         // Step 2.
-        let keys: Vec<u64> =
-            claimants.iter().zip(&containers).map(|(w, &c)| self.key(&out.mesh, w.point, c)).collect();
+        let keys: Vec<u64> = claimants.iter().zip(&containers).map(|(w, &c)| self.key(&out.mesh, w.point, c)).collect();
         for (&container, &key) in containers.iter().zip(&keys) {
             for t in triangles(&out.mesh, container) {
                 let claim = &mut self.claims[t as usize];
@@ -141,21 +135,23 @@ impl Round<'_> {
             }
         }
 
-        // Step 3. A loser's start is read before the mesh changes, but slots stay where they are.
+        // Step 3. A container's slot still holds a triangle next to it afterwards: a loser's next walk starts there.
         let first = out.mesh.slots() as u32;
         let winners = won.iter().filter(|&&won| won).count();
         grow(&mut out.mesh, 2 * winners);
         self.claims.resize(out.mesh.slots(), u64::MAX);
         let mut hull = Active::hull(&GhostMesh::default());
-        let mut later = Vec::with_capacity(waiting_left(&won));
+        let mut later = Vec::with_capacity(won.len() - winners);
         let mut rank = 0;
         for ((claimant, &container), &won) in claimants.iter().zip(&containers).zip(&won) {
             if won {
                 self.graft(&mut out.mesh, claimant.point, container, first + 2 * rank, &mut hull);
                 rank += 1;
             } else {
-                let (Container::Edge(h) | Container::Triangle(h)) = container;
-                let from = if matches!(container, Container::Edge(_)) { h } else { 3 * h };
+                let from = match container {
+                    Container::Edge(h) => h,
+                    Container::Triangle(t) => 3 * t,
+                };
                 later.push(Waiting { point: claimant.point, from });
             }
         }
@@ -202,19 +198,16 @@ impl Round<'_> {
 
     fn key(&self, mesh: &GhostMesh, point: u32, container: Container) -> u64 {
         let at = |v: u32| self.positions[v as usize];
+        let p = at(point);
         match container {
-            Container::Edge(h) => key(point, at(point), &[at(mesh.origin(h)), at(mesh.destination(h))], true),
-            Container::Triangle(t) => {
-                let [a, b, c] = mesh.triangles[t as usize];
-                let corners = match [a, b, c].iter().position(|&v| v == GHOST) {
-                    None => return key(point, at(point), &[at(a), at(b), at(c)], false),
-                    Some(0) => [b, c],
-                    Some(1) => [c, a],
-                    Some(_) => [a, b],
-                };
-                key(point, at(point), &corners.map(at), false)
-            }
+            Container::Edge(h) => Key::on_edge(p, [mesh.origin(h), mesh.destination(h)].map(at)),
+            Container::Triangle(t) => match mesh.triangles[t as usize] {
+                // The hull edge from u to w.
+                [GHOST, w, u] | [u, GHOST, w] | [w, u, GHOST] => Key::outside(p, [u, w].map(at)),
+                corners => Key::inside(p, corners.map(at)),
+            },
         }
+        .of(point)
     }
 
     /// Inserts one point, and lists the edges around it for this round's flips.
@@ -262,10 +255,6 @@ fn triangles(mesh: &GhostMesh, container: Container) -> impl Iterator<Item = u32
         Container::Edge(h) => (h / 3, Some(mesh.twin(h) / 3)),
     };
     std::iter::once(first).chain(second)
-}
-
-fn waiting_left(won: &[bool]) -> usize {
-    won.iter().filter(|&&won| !won).count()
 }
 
 fn grow(mesh: &mut GhostMesh, by: usize) {

@@ -1,48 +1,90 @@
 //! Who goes first where several points want the same container.
 //!
-//! One 64-bit number a point, the least wins: first a bit that is clear for a point on an edge, then 31 bits of its
-//! distance to the container's center, then 32 bits of [`priority`], so that two points never tie.
+//! One 64-bit number a point, the least wins: first a bit that is clear for a point on an edge, then 31 bits that say
+//! how well the point suits, then 32 bits of [`priority`], so that two points never tie.
 //!
-//! The distance steers, so it is integer arithmetic: coordinates are cut to multiples of a power of two, 2⁻⁵⁸ times
-//! the largest of them, and the sum of |dx| and |dy| is then exact. It is the distance times the number of the container's corners (three for
-//! a triangle, two for an edge or a ghost triangle), and is kept as 12 bits of exponent and 19 bits of fraction, cut off:
-//! such numbers are ordered as the distances are, whatever their power of two was.
+//! In a triangle or on an edge the point nearest to the center suits best, since it splits it most evenly. Outside the
+//! hull it is the one highest above the hull edge: most of the others are inside afterwards, where the nearest would
+//! leave them outside, in sectors hardly narrower; and of points along an arc the highest is in the middle, where the
+//! one farthest from the edge's center is at an end.
+//!
+//! This steers, so it is integer arithmetic. Coordinates are cut off to multiples of a power of two, 2⁻⁵⁸ times the
+//! power of two above the largest of them. The sum of |dx| and |dy| from the center is then exact, times the number of
+//! corners (three of a triangle, two of an edge), and so is the height, times the edge's length: twice the area of the
+//! triangle. They are kept as an exponent and a fraction, cut off after 31 bits in all: such numbers are ordered as what
+//! they stand for, whatever their powers of two were.
 
 use glam::DVec2;
 use polder_flip::priority;
 
-/// The key of a point in a container with these corners, one to three.
-pub(super) fn key(point: u32, p: DVec2, corners: &[DVec2], on_edge: bool) -> u64 {
-    let not_on_edge = u64::from(!on_edge) << 63;
-    not_on_edge | u64::from(distance(p, corners)) << 32 | u64::from(priority(point))
+/// All of a point's key but its priority.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Key(u32);
+
+impl Key {
+    /// Of a point strictly between the ends of an edge.
+    pub(super) fn on_edge(p: DVec2, ends: [DVec2; 2]) -> Self {
+        Self(distance(p, &ends))
+    }
+
+    /// Of a point strictly inside a triangle: the nearest first.
+    pub(super) fn inside(p: DVec2, corners: [DVec2; 3]) -> Self {
+        Self(NOT_ON_EDGE | distance(p, &corners))
+    }
+
+    /// Of a point in the sector of a hull edge: the highest above the edge first.
+    pub(super) fn outside(p: DVec2, ends: [DVec2; 2]) -> Self {
+        Self(NOT_ON_EDGE | (NOT_ON_EDGE - 1 - area(p, ends)))
+    }
+
+    /// The whole key.
+    pub(super) fn of(self, point: u32) -> u64 {
+        u64::from(self.0) << 32 | u64::from(priority(point))
+    }
 }
+
+const NOT_ON_EDGE: u32 = 1 << 31;
 
 /// The distance from `p` to the center of the corners, times their number, as exponent and fraction.
 fn distance(p: DVec2, corners: &[DVec2]) -> u32 {
-    let all = || corners.iter().chain(std::iter::once(&p)).flat_map(|q| q.to_array());
-    let top = all().map(top).max().unwrap_or(0);
+    let top = largest_top(p, corners);
     let n = corners.len() as i64;
     let along = |k: usize| {
         let sum: i64 = corners.iter().map(|q| fixed(q[k], top)).sum();
         (n * fixed(p[k], top) - sum).unsigned_abs()
     };
-    let distance = along(0) + along(1);
-    if distance == 0 {
-        return 0;
-    }
-    let bits = 64 - distance.leading_zeros();
-    // Below its leading bit, which the exponent says.
-    let fraction = (distance << (64 - bits) << 1 >> 45) as u32;
-    let exponent = (top + bits as i32 + OFFSET) as u32;
-    exponent << 19 | fraction
+    float(u128::from(along(0) + along(1)), top + 1200, 19)
 }
 
-/// Makes exponents positive: `top` is at least -1074.
-const OFFSET: i32 = 1075;
+/// Twice the area of the triangle between an edge and a point outside of it, zero if cut-off coordinates turn it round.
+fn area(p: DVec2, [u, w]: [DVec2; 2]) -> u32 {
+    let top = largest_top(p, &[u, w]);
+    let to = |q: DVec2, k: usize| i128::from(fixed(q[k], top) - fixed(u[k], top));
+    // Positive where the point lies right of the edge, as it does outside.
+    let area = to(w, 1) * to(p, 0) - to(w, 0) * to(p, 1);
+    float(u128::try_from(area).unwrap_or(0), 2 * top + 2400, 18)
+}
+
+/// A number as its exponent, counted from one below `-base`, and so many bits of its fraction; zero for zero.
+fn float(x: u128, base: i32, fraction_bits: u32) -> u32 {
+    if x == 0 {
+        return 0;
+    }
+    let bits = 128 - x.leading_zeros();
+    // Below its leading bit, which the exponent says.
+    let fraction = x.checked_shl(129 - bits).unwrap_or(0) >> (128 - fraction_bits);
+    ((base + bits as i32) as u32) << fraction_bits | fraction as u32
+}
+
+fn largest_top(p: DVec2, corners: &[DVec2]) -> i32 {
+    let all = corners.iter().chain(std::iter::once(&p)).flat_map(|q| q.to_array());
+    all.map(top).max().unwrap_or(0)
+}
+
 /// The cut-off place is this many bits below the top.
 const PLACES: i32 = 58;
 
-/// An exponent with |x| < 2 to its power, at least -1074.
+/// An exponent with |x| < 2 to its power, between -1021 and 1024.
 fn top(x: f64) -> i32 {
     let exponent = (x.to_bits() >> 52 & 0x7ff) as i32;
     exponent.max(1) - 1022
@@ -91,15 +133,14 @@ mod tests {
 
     #[test]
     fn keys_put_edges_first_and_never_tie() {
-        let corners = [DVec2::ZERO, DVec2::X, DVec2::Y];
-        let near = key(0, DVec2::splat(0.3), &corners, false);
-        let far = key(1, DVec2::splat(0.5), &corners[1..], true);
-        assert!(far < near);
-        let tied: Vec<u64> = (0..100).map(|i| key(i, DVec2::splat(0.3), &corners, false)).collect();
-        let mut sorted = tied.clone();
-        sorted.sort_unstable();
-        sorted.dedup();
-        assert_eq!(sorted.len(), tied.len());
+        let [a, b, c] = [DVec2::ZERO, DVec2::X, DVec2::Y];
+        let near = Key::inside(DVec2::splat(0.3), [a, b, c]);
+        assert!(Key::on_edge(DVec2::new(0.75, 0.25), [b, c]) < near);
+        assert!(Key::outside(DVec2::new(9.0, 9.0), [b, c]) < Key::outside(DVec2::new(1.0, 1.0), [b, c]));
+        let mut keys: Vec<u64> = (0..100).map(|i| near.of(i)).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        assert_eq!(keys.len(), 100);
     }
 
     #[test]

@@ -88,12 +88,7 @@ pub fn shift(mesh: GhostMesh, centers: &[DVec2], positions: &[DVec2]) -> Result<
 }
 
 /// Step 1. Returns the number of rounds.
-fn pin(
-    mesh: &GhostMesh,
-    centers: &[DVec2],
-    at: &mut [DVec2],
-    pinned: &mut [bool],
-) -> Result<u64, DualizeError> {
+fn pin(mesh: &GhostMesh, centers: &[DVec2], at: &mut [DVec2], pinned: &mut [bool]) -> Result<u64, DualizeError> {
     // Whether a site has moved in the last round: triangles without such a corner are as they were.
     let mut fresh = vec![true; at.len()];
     let mut to_pin = vec![false; at.len()];
@@ -141,9 +136,9 @@ fn unpin(
         }
         rounds += 1;
         let least = |v: u32| {
-            star(mesh, half_edge[v as usize]).map(|h| mesh.destination(h)).all(|u| {
-                u == GHOST || !waiting[u as usize] || priority(u) > priority(v)
-            })
+            star(mesh, half_edge[v as usize])
+                .map(|h| mesh.destination(h))
+                .all(|u| u == GHOST || !waiting[u as usize] || priority(u) > priority(v))
         };
         let (turn, later): (Vec<u32>, Vec<u32>) = todo.into_iter().partition(|&v| least(v));
         for &v in &turn {

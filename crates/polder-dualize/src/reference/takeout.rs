@@ -36,8 +36,7 @@
 //! chain alone, and what they add lies in what was the star. Several neighbors of one vertex may go in one round: their
 //! stars do not overlap.
 //!
-//! On a chain, a vertex between two others is merged into one of them, and one at the end is dropped with its two ghost
-//! triangles. When fewer than three vertices that are not on a line remain, the mesh is therefore a chain, or empty
+//! On a chain, a vertex is merged into one next to it: the two ghost triangles of the edge between them vanish. When fewer than three vertices that are not on a line remain, the mesh is therefore a chain, or empty
 //! when fewer than two remain, and it is the next stage that goes on from there.
 //!
 //! # Heirs
@@ -66,11 +65,7 @@ pub(super) struct Taken {
 /// Takes the pinned vertices out and closes the ranks: no slot of the mesh stays free.
 ///
 /// The mesh must be a triangulation of the positions `at` with a convex hull, or a chain, or empty.
-pub(super) fn take_out(
-    mesh: &mut GhostMesh,
-    at: &[DVec2],
-    mut pinned: Vec<bool>,
-) -> Result<Taken, DualizeError> {
+pub(super) fn take_out(mesh: &mut GhostMesh, at: &[DVec2], mut pinned: Vec<bool>) -> Result<Taken, DualizeError> {
     let mut heirs: Vec<u32> = (0..at.len() as u32).collect();
     let mut gone = Vec::new();
     let mut left = pinned.iter().filter(|&&p| p).count();
@@ -144,12 +139,12 @@ fn remove(mesh: &mut GhostMesh, at: &[DVec2], h: u32) -> Result<(), DualizeError
         }
     }
     match (ghosts, degree) {
-        (0, 3..) => remove_inner(mesh, at, h, degree),
+        (0, 3..) => return remove_inner(mesh, at, h, degree),
         (1, 3..) => contract(mesh, to_ghost),
-        (2, 4) => contract(mesh, to_finite),
-        (1, 2) => drop_end(mesh, to_finite),
+        (2, 4) | (1, 2) => contract(mesh, to_finite),
         _ => return Err(broken(STAGE, v)),
     }
+    Ok(())
 }
 
 /// Step 2, for a vertex of so many neighbors, none of them the ghost.
@@ -187,36 +182,29 @@ fn remove_inner(mesh: &mut GhostMesh, at: &[DVec2], start: u32, degree: usize) -
 }
 
 /// Shrinks the edge `h` to its destination: its two triangles vanish, the other triangles around its origin stay.
-fn contract(mesh: &mut GhostMesh, h: u32) -> Result<(), DualizeError> {
+///
+/// The other two edges of a vanishing triangle become one. At an end of a chain, that is an end of `h`, the two
+/// triangles share one more edge, which vanishes as well.
+fn contract(mesh: &mut GhostMesh, h: u32) {
     let (from, to, g) = (mesh.origin(h), mesh.destination(h), mesh.twin(h));
-    let around: Vec<u32> = star(mesh, h).collect();
-    for side in [h, g] {
-        let (p, q) = (mesh.twin(next(side)), mesh.twin(prev(side)));
-        if [h / 3, g / 3].iter().any(|&t| p / 3 == t || q / 3 == t) {
-            return Err(broken(STAGE, from));
-        }
-        mesh.link(p, q);
-    }
-    for out in around {
+    for out in star(mesh, h).collect::<Vec<u32>>() {
         for corner in &mut mesh.triangles[(out / 3) as usize] {
             if *corner == from {
                 *corner = to;
             }
         }
     }
-    mesh.delete((h / 3) as usize);
-    mesh.delete((g / 3) as usize);
-    Ok(())
-}
-
-/// Drops the end of a chain, the origin of `h`, with the two ghost triangles of its one edge.
-fn drop_end(mesh: &mut GhostMesh, h: u32) -> Result<(), DualizeError> {
-    let g = mesh.twin(h);
-    let (p, q) = (mesh.twin(next(h)), mesh.twin(prev(g)));
-    if p != prev(g) {
-        mesh.link(p, q);
+    let beyond = [next(h), prev(h), next(g), prev(g)].map(|side| mesh.twin(side));
+    let (end_at_to, end_at_from) = (beyond[0] == prev(g), beyond[1] == next(g));
+    match (end_at_to, end_at_from) {
+        (false, false) => {
+            mesh.link(beyond[0], beyond[1]);
+            mesh.link(beyond[2], beyond[3]);
+        }
+        (true, false) => mesh.link(beyond[1], beyond[2]),
+        (false, true) => mesh.link(beyond[0], beyond[3]),
+        (true, true) => {}
     }
     mesh.delete((h / 3) as usize);
     mesh.delete((g / 3) as usize);
-    Ok(())
 }

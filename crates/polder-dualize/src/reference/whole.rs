@@ -1,7 +1,7 @@
 //! Stages 1 to 4 in a row.
 
 use super::{dualize, insert, shift};
-use crate::{Dualized, DualizeError, Inserted, Shifted};
+use crate::{DualizeError, Dualized, Inserted, Shifted};
 use glam::DVec2;
 use polder_mesh::NONE;
 use polder_voronoi::{Diagram, Options, Sites};

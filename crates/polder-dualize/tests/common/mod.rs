@@ -2,8 +2,8 @@
 #![allow(dead_code, reason = "each test binary uses some of them")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-use polder_dualize::{DVec2, reference};
 use polder_dualize::reference::Phases;
+use polder_dualize::{DVec2, reference};
 use polder_mesh::{Chains, GhostMesh, Parts, Triangulation};
 use polder_voronoi::Options;
 
