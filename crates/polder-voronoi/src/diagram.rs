@@ -40,7 +40,8 @@ impl Diagram {
         self.colors[self.index(pixel)]
     }
 
-    /// Whether the parts fit together: sizes, colors that exist, debris in order and the only pixels without color, each site in its own color.
+    /// Whether the parts fit together: sizes, colors that exist, debris in order and the only pixels without color, each
+    /// site in its own color.
     pub fn check(&self, sites: &Sites) -> Result<(), VoronoiError> {
         let fault = |what, index| Err(VoronoiError::Mismatch { what, index });
         if [self.width, self.height] != sites.size || self.colors.len() != self.width as usize * self.height as usize {

@@ -19,7 +19,7 @@
 //!
 //! # Sources
 //!
-//! [QCT] section 3.1, Appendix A and B; [CET] sections 2 and 3.1. Full entries are in `references.bib`.
+//! \[QCT\] section 3.1, Appendix A and B; \[CET\] sections 2 and 3.1. Full entries are in `references.bib`.
 #![forbid(unsafe_code)]
 
 mod diagram;

@@ -1,6 +1,6 @@
 //! The mapping between the plane and the grid, exact both ways.
 //!
-//! Source: [QCT] Appendix B, which this departs from (see below). Along each axis, with a *unit* `2^e` and a pixel
+//! Source: \[QCT\] Appendix B, which this departs from (see below). Along each axis, with a *unit* `2^e` and a pixel
 //! side of `2h` units,
 //!
 //! ```text
@@ -27,7 +27,7 @@
 //! the center of its pixel; the last column takes what lies beyond as well. So if two positions, each of them a point
 //! or the center of its pixel, belong to different columns, they are strictly ordered as their columns are.
 //!
-//! Departures: [QCT] divides by a rounded scale, which may put a point into a neighboring pixel; its translation
+//! Departures: \[QCT\] divides by a rounded scale, which may put a point into a neighboring pixel; its translation
 //! truncates instead of flooring, its largest coordinate falls off the grid, and its range overflows or vanishes for
 //! the largest and smallest numbers. Its sites stand at the lower left corners of pixels; here at their centers.
 

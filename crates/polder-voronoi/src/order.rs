@@ -5,7 +5,7 @@ use crate::Diagram;
 /// A pixel paired with a site, in an order: by squared distance, then the site's x and y, then the pixel's x and y.
 ///
 /// The order agrees with the distance between pixel centers and no two pairs are equal in it, which is all that
-/// [CET] asks of a tie-breaking rule. Sides of at most 32768 pixels keep squared distances below 2^31.
+/// \[CET\] asks of a tie-breaking rule. Sides of at most 32768 pixels keep squared distances below 2^31.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Key {
     /// Squared distance in the upper half, packed site in the lower half.

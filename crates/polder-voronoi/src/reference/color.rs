@@ -1,4 +1,4 @@
-//! The exact Euclidean coloring in linear time, by the Parallel Banding Algorithm run in sequence: [QCT] section 3.1.
+//! The exact Euclidean coloring in linear time, by the Parallel Banding Algorithm run in sequence: \[QCT\] section 3.1.
 //!
 //! 1. Each column by itself: for every pixel the nearest site of its column.
 //! 2. Each row by itself: of these one site a column, those that are nearest to some pixel of the row, as a stack; a

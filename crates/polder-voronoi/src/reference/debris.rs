@@ -1,14 +1,14 @@
-//! Finding debris: what a Euclidean coloring cuts off from its site ([CET] section 2).
+//! Finding debris: what a Euclidean coloring cuts off from its site (\[CET\] section 2).
 //!
 //! A pixel is debris if no chain of pixels of its color, neighbor to neighbor and each closer to the site in the order
-//! of [`Key`](crate::Key), leads to the site. In rounds:
+//! of [`Key`], leads to the site. In rounds:
 //!
 //! 1. Mark every pixel, sites apart, that has no closer neighbor of its own color.
 //! 2. Drop the marked pixels: they lose their color.
 //! 3. Repeat until none is marked. From the second round on only neighbors of dropped pixels are looked at.
 //!
-//! Departure: [CET] defines debris as what is not in the site's component, and [QCT] finds it on the CPU. In a
-//! Euclidean coloring the two are the same, by the proof of [CET]'s Bulk Lemma; the rounds need no connected components.
+//! Departure: \[CET\] defines debris as what is not in the site's component, and \[QCT\] finds it on the CPU. In a
+//! Euclidean coloring the two are the same, by the proof of \[CET\]'s Bulk Lemma; the rounds need no components.
 
 use crate::order::{Key, neighbors};
 use crate::{Diagram, Sites, UNCOLORED, VoronoiError};

@@ -1,4 +1,4 @@
-//! Plain flooding with one priority queue: [CET] section 2, word for word. For tests: it is the definition that the
+//! Plain flooding with one priority queue: \[CET\] section 2. For tests: it is the definition that the
 //! other steps are held against, and takes a few hundred times as long.
 //!
 //! 1. The queue starts with every site's own pixel paired with the site.

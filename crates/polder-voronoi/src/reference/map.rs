@@ -1,4 +1,4 @@
-//! From points to sites: [QCT] section 3.1, first paragraph.
+//! From points to sites: \[QCT\] section 3.1, first paragraph.
 //!
 //! 1. Every point claims its pixel; the lowest index keeps it.
 //! 2. The sites are numbered in pixel order, row by row.

@@ -1,4 +1,4 @@
-//! Recoloring debris, so that the diagram becomes that of flooding: [QCT] Appendix A.
+//! Recoloring debris, so that the diagram becomes that of flooding: \[QCT\] Appendix A.
 //!
 //! The *candidates* of a debris pixel A are the colors i of its neighbors B with (B, i) before (A, i) in the order of
 //! [`Key`]; the best one is that with the smallest (A, i). In rounds ([`recolor`]):
@@ -7,11 +7,11 @@
 //! 2. All of them take what they found at once.
 //! 3. The debris around pixels that changed is active in the next round. Repeat until none is.
 //!
-//! Departure: [QCT]'s Algorithm A.1 takes the pixels from a priority queue, each once; it stands here as
+//! Departure: \[QCT\]'s Algorithm A.1 takes the pixels from a priority queue, each once; it stands here as
 //! [`recolor_by_queue`]. In the rounds a pixel may change its color again, and the result is the same:
 //!
 //! - *When no round changes anything, the diagram is that of flooding.* Flooding gives each debris pixel its best
-//!   candidate: by [CET]'s Ordered Coloring Lemma whoever is colored later, and offers a color then, offers it with a
+//!   candidate: by \[CET\]'s Ordered Coloring Lemma whoever is colored later, and offers a color then, offers it with a
 //!   larger key. And only one coloring gives each debris pixel its best candidate: of the pixels where two such
 //!   colorings differ take the one with the smallest key in either; the neighbor that it has this key from has a
 //!   smaller one, so both colorings agree there, and both offer the same, a contradiction.
@@ -83,7 +83,7 @@ fn all_colored(diagram: &Diagram) -> Result<(), VoronoiError> {
     }
 }
 
-/// Colors the uncolored pixels listed in [`Diagram::debris`] by [QCT]'s Algorithm A.1. Returns how many pairs it took
+/// Colors the uncolored pixels listed in [`Diagram::debris`] by \[QCT\]'s Algorithm A.1. Returns how many pairs it took
 /// from the queue.
 ///
 /// # Errors
