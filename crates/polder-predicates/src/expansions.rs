@@ -1,6 +1,7 @@
 //! Adaptive floating-point expansions, by the `robust` crate, inside the exponent range where they are proven exact.
 //!
-//! Shewchuk's predicates are exact as long as nothing overflows or underflows. Here is why neither happens when every
+//! J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, Discrete &
+//! Computational Geometry 18, 1997. His predicates are exact as long as nothing overflows or underflows. Here is why neither happens when every
 //! coordinate that is not zero has an absolute value in `[2^-140, 2^200)`:
 //!
 //! - **Underflow.** Such coordinates are multiples of `2^-192`. So are their rounded differences and the tails of

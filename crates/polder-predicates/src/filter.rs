@@ -37,7 +37,7 @@
 //! then so does a product of two liftings: the bound is infinite or NaN. The sum of the three `|t|` is at most `(1 + 30 u) q`. So when a term or a partial sum overflows although
 //! `q` is finite, the rest of the sum is less than `100 u` of it and cannot change its sign.
 //!
-//! Shewchuk's bound has `S` in the place of `Q`. It is sharper for needles along an axis, and it costs a fifth of the
+//! The bound of Shewchuk (1997) has `S` in the place of `Q`. It is sharper for needles along an axis, and it costs a fifth of the
 //! time of the whole test.
 //!
 //! The proof needs IEEE 754 double arithmetic without fused or extended intermediate results. Rust promises that on
