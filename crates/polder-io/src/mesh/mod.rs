@@ -117,10 +117,7 @@ impl MeshFile {
         if vertices == points {
             return Ok(());
         }
-        // Adding 0.0 makes -0.0 into 0.0 and leaves the rest.
-        let key = |p: DVec2| [p.x + 0.0, p.y + 0.0].map(f64::to_bits);
-        let mut order: Vec<u32> = (0..points.len() as u32).collect();
-        order.sort_unstable_by_key(|&i| (key(points[i as usize]), i));
+        let order = by_value(points);
         let name = |i: usize, &p: &DVec2| {
             if points.get(i) == Some(&p) {
                 return Some(i as u32);
@@ -136,6 +133,27 @@ impl MeshFile {
         }
         Ok(())
     }
+}
+
+/// For each point the lowest one equal to it.
+pub fn lowest_equal(points: &[DVec2]) -> Vec<u32> {
+    let mut lowest = vec![0; points.len()];
+    for equal in by_value(points).chunk_by(|&i, &j| points[i as usize] == points[j as usize]) {
+        equal.iter().for_each(|&i| lowest[i as usize] = equal[0]);
+    }
+    lowest
+}
+
+/// The same for equal points: adding 0.0 makes -0.0 into 0.0 and leaves the rest.
+fn key(p: DVec2) -> [u64; 2] {
+    [p.x + 0.0, p.y + 0.0].map(f64::to_bits)
+}
+
+/// The points sorted so that equal ones are neighbors, the lowest first.
+fn by_value(points: &[DVec2]) -> Vec<u32> {
+    let mut order: Vec<u32> = (0..points.len() as u32).collect();
+    order.sort_unstable_by_key(|&i| (key(points[i as usize]), i));
+    order
 }
 
 /// The constrained edges of a triangulation; where it has no triangles, the pieces of its chains.

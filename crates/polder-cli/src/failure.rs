@@ -1,0 +1,87 @@
+//! Why the command ends without its result, for people and for programs.
+
+use crate::args::ErrorFormat;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+/// What went wrong.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    kind: &'static str,
+    message: String,
+    details: Map<String, Value>,
+}
+
+/// Crossing pairs that a sentence names; JSON names all.
+const NAMED: usize = 5;
+
+impl Failure {
+    pub(crate) fn new(kind: &'static str, message: impl Into<String>) -> Self {
+        Self { kind, message: message.into(), details: Map::new() }
+    }
+
+    fn with(mut self, key: &str, value: impl Into<Value>) -> Self {
+        self.details.insert(key.into(), value.into());
+        self
+    }
+
+    pub(crate) fn io(path: &Path, error: &std::io::Error) -> Self {
+        Self::new("io", format!("{}: {error}", path.display()))
+    }
+
+    /// An error of the library. Segments are named as the file numbers them, which begins with `first`.
+    pub(crate) fn of_library(error: polder::Error, first: u32) -> Self {
+        let kind = error.kind();
+        match error {
+            polder::Error::CrossingConstraints { pairs, truncated } => {
+                let number = |i: u32| i as u64 + first as u64;
+                let pairs: Vec<[u64; 2]> = pairs.into_iter().map(|pair| pair.map(number)).collect();
+                let more = if truncated { "at least " } else { "" };
+                let plural = if pairs.len() == 1 { "pair of segments crosses" } else { "pairs of segments cross" };
+                let listed: Vec<_> = pairs.iter().take(NAMED).map(|[a, b]| format!("{a} and {b}")).collect();
+                let rest = if pairs.len() > NAMED { ", ..." } else { "" };
+                let message = format!("{more}{} {plural}: {}{rest}", pairs.len(), listed.join(", "));
+                Self::new(kind, message).with("pairs", json!(pairs)).with("truncated", truncated).with("first", first)
+            }
+            other => Self::new(kind, other.to_string()),
+        }
+    }
+
+    /// 1 for bad input, 3 for files, device, resources and defects, 4 for cancelled.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self.kind {
+            "malformed_file"
+            | "index_out_of_range"
+            | "non_finite_coordinate"
+            | "crossing_constraints"
+            | "too_large" => 1,
+            "cancelled" => 4,
+            _ => 3,
+        }
+    }
+
+    /// Tells it on standard error.
+    pub(crate) fn tell(&self, format: ErrorFormat) {
+        match format {
+            ErrorFormat::Human => eprintln!("polder: {}", self.message),
+            ErrorFormat::Json => {
+                let mut object = Map::new();
+                object.insert("kind".into(), self.kind.into());
+                object.insert("message".into(), self.message.clone().into());
+                object.extend(self.details.clone());
+                eprintln!("{}", Value::Object(object));
+            }
+        }
+    }
+}
+
+impl From<polder_io::IoError> for Failure {
+    fn from(error: polder_io::IoError) -> Self {
+        let failure = Self::new(error.kind(), error.to_string());
+        match error.place() {
+            Some(polder_io::Place::Line(line)) => failure.with("line", line),
+            Some(polder_io::Place::Byte(byte)) => failure.with("byte", byte),
+            _ => failure,
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! `polder triangulate` and `polder digest`.
+
+use crate::args::{DigestArgs, TriangulateArgs, WayArgs};
+use crate::failure::Failure;
+use crate::job::{DASH, Job, WriteTo, format_of, usage};
+use crate::verify::named_mesh;
+use polder::{Options, Output, Triangulation};
+use polder_io::{Input, MeshFormat};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+pub(crate) fn triangulate(job: &Job, args: &TriangulateArgs) -> Result<ExitCode, Failure> {
+    let to = format_of(&args.output, args.to, MeshFormat::of, "--to", "ele, tri, obj, ply, vtk or svg");
+    let beside = args.neigh || args.edge || args.node;
+    if beside && (to != MeshFormat::Ele || args.output == Path::new(DASH)) {
+        usage("--neigh, --edge and --node stand beside an .ele file");
+    }
+    let input = job.read(&args.input)?;
+    if input.has_holes_or_closed_outline() {
+        job.say("polder: holes and outlines do not bound the mesh yet: the whole convex hull is triangulated");
+    }
+    let Output { triangulation, report } = compute(job, &input, &args.way)?;
+
+    let points = input.pslg.points();
+    let main: Box<WriteTo> = match to {
+        MeshFormat::Ele => Box::new(|out| polder_io::write_ele(out, &triangulation, input.first)),
+        MeshFormat::Tri => Box::new(|out| polder_io::write_tri(out, triangulation.triangles())),
+        MeshFormat::Obj => Box::new(|out| polder_io::write_obj(out, points, &triangulation)),
+        MeshFormat::Ply => Box::new(|out| polder_io::write_ply(out, points, &triangulation)),
+        MeshFormat::Vtk => Box::new(|out| polder_io::write_vtk(out, points, &triangulation)),
+        MeshFormat::Svg => Box::new(|out| polder_io::svg::write_svg(out, points, &triangulation)),
+        other => return Err(Failure::new("unsupported", format!("{other:?} cannot be written"))),
+    };
+    let neigh: Box<WriteTo> = Box::new(|out| polder_io::write_neigh(out, &triangulation, input.first));
+    let edge: Box<WriteTo> = Box::new(|out| polder_io::write_edge(out, &triangulation, &input));
+    let node: Box<WriteTo> = Box::new(|out| polder_io::write_node(out, &input));
+    let mut files: Vec<(PathBuf, &WriteTo<'_>)> = Vec::new();
+    for (asked, extension, write) in
+        [(args.neigh, "neigh", &neigh), (args.edge, "edge", &edge), (args.node, "node", &node)]
+    {
+        if asked {
+            files.push((args.output.with_extension(extension), write));
+        }
+    }
+    // Last, so that who sees it finds the others beside it.
+    files.push((args.output.clone(), &main));
+    refuse_overwriting_input(&args.input.input, &files);
+    job.write(&files)?;
+    job.done();
+
+    if args.report.is_some() {
+        let line = crate::json(&report)?;
+        if args.output == Path::new(DASH) { eprintln!("{line}") } else { crate::print(&line)? }
+    } else {
+        job.say(&summary(&report));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// One sentence on what came out.
+fn summary(report: &polder::Report) -> String {
+    let mut parts = vec![
+        format!("{} triangles", report.triangles),
+        format!("{} vertices", report.points.vertices),
+        format!("{} constrained edges", report.constraints.constrained_edges),
+    ];
+    for (count, what) in [
+        (report.points.duplicates, "duplicate points"),
+        (report.constraints.repeated.len(), "repeated segments"),
+        (report.constraints.zero_length.len(), "segments of no length"),
+    ] {
+        if count > 0 {
+            parts.push(format!("{count} {what}"));
+        }
+    }
+    let time = match report.seconds {
+        s if s < 1.0 => format!("{:.1} ms", 1e3 * s),
+        s => format!("{s:.2} s"),
+    };
+    format!("polder: {} in {time} ({})", parts.join(", "), report.backend)
+}
+
+/// A .node written beside an .ele must not replace the .node that is the input.
+fn refuse_overwriting_input(input: &Path, files: &[(PathBuf, &WriteTo<'_>)]) {
+    let real = |path: &Path| std::fs::canonicalize(path).ok();
+    let inputs = [real(input), real(&input.with_extension("node"))];
+    let clash = files.iter().find(|(path, _)| real(path).is_some_and(|path| inputs.contains(&Some(path))));
+    if let Some((path, _)) = clash.filter(|_| input != Path::new(DASH)) {
+        usage(&format!("{} would replace the input", path.display()));
+    }
+}
+
+/// Triangulates with the bar and the cancel flag at work.
+pub(crate) fn compute(job: &Job, input: &Input, way: &WayArgs) -> Result<Output, Failure> {
+    let options = Options {
+        backend: way.backend.backend(),
+        threads: way.threads,
+        grid: way.grid,
+        max_crossings: way.max_crossings,
+        progress: Some(job.progress()),
+        cancel: Some(job.cancel.clone()),
+    };
+    job.stage("triangulating");
+    polder::triangulate(&input.pslg, &options).map_err(|error| Failure::of_library(error, input.first))
+}
+
+pub(crate) fn digest(job: &Job, args: &DigestArgs) -> Result<ExitCode, Failure> {
+    let input = job.read(&args.input)?;
+    let digest = match &args.mesh {
+        None => compute(job, &input, &args.way)?.triangulation.digest(),
+        Some(path) => {
+            let mesh = named_mesh(job, &input, path, args.mesh_from)?
+                .map_err(|message| Failure::new("malformed_file", message))?;
+            let points = input.pslg.points();
+            let lowest = polder_io::lowest_equal(points);
+            let mut triangles = mesh.triangles;
+            for corner in triangles.iter_mut().flatten() {
+                *corner = lowest.get(*corner as usize).copied().unwrap_or(*corner);
+            }
+            let mesh = Triangulation::from_triangles(points.len(), &triangles);
+            mesh.map_err(|e| Failure::new("malformed_file", format!("{}: {e}", path.display())))?.digest()
+        }
+    };
+    job.done();
+    crate::print(&digest.to_string())?;
+    Ok(ExitCode::SUCCESS)
+}
