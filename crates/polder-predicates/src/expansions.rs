@@ -1,8 +1,7 @@
 //! Adaptive floating-point expansions, by the `robust` crate, inside the exponent range where they are proven exact.
 //!
-//! J. R. Shewchuk, Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates, Discrete &
-//! Computational Geometry 18, 1997. His predicates are exact as long as nothing overflows or underflows. Here is why neither happens when every
-//! coordinate that is not zero has an absolute value in `[2^-140, 2^200)`:
+//! The predicates of Shewchuk (Shewchuk1997 in references.bib) are exact as long as nothing overflows or underflows.
+//! Here is why neither happens when every coordinate that is not zero has an absolute value in `[2^-140, 2^200)`:
 //!
 //! - **Underflow.** Such coordinates are multiples of `2^-192`. So are their rounded differences and the tails of
 //!   those, and whatever the predicates build is a sum of products of at most four of these, so a multiple of

@@ -34,11 +34,12 @@
 //! so small that input with differences above `2^-140` loses nothing.
 //!
 //! If a difference, a lifting or a product of two differences overflows, then so does a lifting; if a minor overflows,
-//! then so does a product of two liftings: the bound is infinite or NaN. The sum of the three `|t|` is at most `(1 + 30 u) q`. So when a term or a partial sum overflows although
-//! `q` is finite, the rest of the sum is less than `100 u` of it and cannot change its sign.
+//! then so does a product of two liftings: the bound is infinite or NaN. The sum of the three `|t|` is at most
+//! `(1 + 30 u) q`. So when a term or a partial sum overflows although `q` is finite, the rest of the sum is less than
+//! `100 u` of it and cannot change its sign.
 //!
-//! The bound of Shewchuk (1997) has `S` in the place of `Q`. It is sharper for needles along an axis, and it costs a fifth of the
-//! time of the whole test.
+//! The bound in Shewchuk1997 (references.bib) has `S` in the place of `Q`. It is sharper for needles along an axis, and it
+//! costs a fifth of the time of the whole test.
 //!
 //! The proof needs IEEE 754 double arithmetic without fused or extended intermediate results. Rust promises that on
 //! every target but 32-bit x86 without SSE2.

@@ -4,8 +4,8 @@
 //! diagonal that touches the lexicographically smallest of the four (by x, then by y) is the one that stays. Below is
 //! why this local rule, applied edge by edge, has one outcome for the whole triangulation.
 //!
-//! Lawson's flips (1977) on a lifting that is perturbed symbolically, in the manner of Edelsbrunner and Mücke's
-//! simulation of simplicity (1990).
+//! Lawson's flips (Lawson1977 in references.bib) on a lifting that is perturbed symbolically (as in
+//! EdelsbrunnerMuecke1990).
 //!
 //! # Setting
 //!
