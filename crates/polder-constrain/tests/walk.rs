@@ -88,7 +88,7 @@ fn input(side: i32, count: usize, segments: usize) -> impl Strategy<Value = (Vec
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(400))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(400) })]
 
     /// Small grids: most constraints run through vertices, along edges and over each other.
     #[test]

@@ -89,7 +89,7 @@ fn grid_points(side: i32, count: usize) -> impl Strategy<Value = Vec<DVec2>> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(300) })]
 
     /// Small grids: nearly every set has cocircular and collinear points.
     #[test]

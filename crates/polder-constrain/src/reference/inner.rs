@@ -1,0 +1,205 @@
+//! Pairs of triangles with the same owner are flipped. [QCT] section 4, algorithm 5: the inner loop.
+//!
+//! For a triangle A of a chain, B is the one before it and C the one after it, seen from the lower end of the owner. An
+//! *inner round*:
+//!
+//! 1. The configuration of (A, C) is found for each owned triangle A whose next one has the same owner.
+//! 2. (A, C) is flippable
+//!    - in case 1, if it is a zero or single intersection;
+//!    - in case 2, if it and (B, A) are double ones, and B and what would then come after it were a single one;
+//!    - in case 3, if it is a double one, (B, A) is concave, and B and what would then come after it were not.
+//!
+//!    A flippable pair claims A and C, in cases 2 and 3 also B, for the lowest case and, of the same case, the least
+//!    priority of A. (Where only claims of 32 bits are at hand: one pass a case, each leaving alone what a pass before
+//!    has taken.)
+//! 3. Pairs that got all they claimed are flipped. The sides of the corners stay known, so that no test is needed to see
+//!    which of the new triangles the owner crosses; the others are nobody's from then on.
+//!
+//! What decides about a flip lies within its claimed triangles. So flips of one round may be thought of as made one after
+//! the other, and each makes (length, number) of its chain smaller: see
+//! [`TriangleChain::measure`](super::TriangleChain::measure).
+
+use super::configuration::{Configuration, Side, configuration};
+use super::insert::Insertion;
+use polder_flip::priority;
+use polder_mesh::{NONE, twin_code};
+
+/// Rules other than the stage's own.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Trial {
+    /// Every double intersection is flippable in case 1, without a look at what lies before it.
+    pub blind: bool,
+    /// One flip a round at most.
+    pub single_file: bool,
+}
+
+/// A pair (A, C) that may be flipped.
+#[derive(Clone, Copy, Debug)]
+struct Candidate {
+    /// The half-edge of A towards C.
+    h: u32,
+    /// B, where it is claimed too.
+    b: u32,
+    case: u8,
+}
+
+#[derive(Debug)]
+pub(super) struct Inner {
+    /// For each triangle A the configuration of (A, C), if it has one in this round.
+    configurations: Vec<Option<Configuration>>,
+    /// For each triangle the least claim, the highest number between rounds.
+    claims: Vec<u64>,
+    candidates: Vec<Candidate>,
+    pub(super) trial: Trial,
+}
+
+const UNCLAIMED: u64 = u64::MAX;
+
+impl Inner {
+    pub(super) fn new(slots: usize) -> Self {
+        Self {
+            configurations: vec![None; slots],
+            claims: vec![UNCLAIMED; slots],
+            candidates: Vec::new(),
+            trial: Trial::default(),
+        }
+    }
+}
+
+impl Candidate {
+    fn key(&self) -> u64 {
+        u64::from(self.case) << 32 | u64::from(priority(self.h / 3))
+    }
+}
+
+impl Insertion<'_> {
+    /// One inner round; gives the number of flips.
+    pub fn inner_round(&mut self) -> u64 {
+        self.report.inner_rounds += 1;
+        // Step 1.
+        for &t in &self.active {
+            self.inner.configurations[t as usize] = self.next_pair(t as usize).map(|(_, c)| c);
+        }
+        // Step 2.
+        let mut candidates = std::mem::take(&mut self.inner.candidates);
+        candidates.clear();
+        for &t in &self.active {
+            let Some(candidate) = self.candidate(t as usize) else { continue };
+            for triangle in self.claimed(candidate) {
+                let claim = &mut self.inner.claims[triangle as usize];
+                *claim = (*claim).min(candidate.key());
+            }
+            candidates.push(candidate);
+        }
+        // Step 3. Whether a candidate wins is settled by the claims, which flips do not touch.
+        let wins = |c: &Candidate| self.claimed(*c).all(|t| self.inner.claims[t as usize] == c.key());
+        let mut winners: Vec<Candidate> = candidates.iter().copied().filter(wins).collect();
+        if self.inner.trial.single_file {
+            winners.sort_unstable_by_key(Candidate::key);
+            winners.truncate(1);
+        }
+        for &candidate in &candidates {
+            for t in self.claimed(candidate) {
+                self.inner.claims[t as usize] = UNCLAIMED;
+            }
+        }
+        for winner in &winners {
+            self.flip(winner.h);
+            self.report.flips[usize::from(winner.case - 1)] += 1;
+        }
+        self.inner.candidates = candidates;
+        self.active.retain(|&t| self.owner[t as usize] != NONE);
+        winners.len() as u64
+    }
+
+    fn claimed(&self, c: Candidate) -> impl Iterator<Item = u32> + use<> {
+        [c.h / 3, self.mesh.twin(c.h) / 3, c.b].into_iter().filter(|&t| t != NONE)
+    }
+
+    /// The half-edge by which the owner comes into a triangle, or goes out of it.
+    fn gate(&self, t: usize, outward: bool) -> Option<u32> {
+        let sides = self.sides[t];
+        let (from, to) = if outward { (-1, 1) } else { (1, -1) };
+        (0..3).find(|k| sides[(k + 1) % 3] == from && sides[(k + 2) % 3] == to).map(|k| (3 * t + k) as u32)
+    }
+
+    fn corner(&self, h: u32) -> (u32, Side) {
+        let (t, k) = twin_code(h);
+        (self.mesh.triangles[t][k], self.sides[t][k])
+    }
+
+    /// The half-edge from A to C and the configuration of the two, if C has the same owner.
+    fn next_pair(&self, a: usize) -> Option<(u32, Configuration)> {
+        let h = self.gate(a, true)?;
+        let g = self.mesh.twin(h);
+        if self.owner[(g / 3) as usize] != self.owner[a] {
+            return None;
+        }
+        let ends = [self.mesh.origin(h), self.mesh.destination(h)];
+        Some((h, configuration(self.positions, [self.corner(h), self.corner(g)], ends)))
+    }
+
+    fn candidate(&self, a: usize) -> Option<Candidate> {
+        let own = self.inner.configurations[a]?;
+        let h = self.gate(a, true)?;
+        match own {
+            Configuration::Zero | Configuration::Single => return Some(Candidate { h, b: NONE, case: 1 }),
+            Configuration::Concave => return None,
+            Configuration::Double if self.inner.trial.blind => return Some(Candidate { h, b: NONE, case: 1 }),
+            Configuration::Double => {}
+        }
+        let entry = self.mesh.twin(self.gate(a, false)?);
+        let b = entry / 3;
+        if self.owner[b as usize] != self.owner[a] {
+            return None;
+        }
+        let before = self.inner.configurations[b as usize]?;
+        // After the flip B is followed by the triangle of its edge and the far corner of C, which lies on the other side
+        // than A's near corner: it takes the place of A's third corner.
+        let far = self.corner(self.mesh.twin(h));
+        let ends = [self.mesh.origin(entry), self.mesh.destination(entry)];
+        let then = configuration(self.positions, [self.corner(entry), far], ends);
+        let case = match (before, then) {
+            (Configuration::Double, Configuration::Zero | Configuration::Single) => 2,
+            (Configuration::Concave, then) if then != Configuration::Concave => 3,
+            _ => return None,
+        };
+        Some(Candidate { h, b, case })
+    }
+
+    /// Flips the pair of half-edge `h` from A to C, both of the same owner.
+    fn flip(&mut self, h: u32) {
+        let g = self.mesh.twin(h);
+        let (right, left) = (self.mesh.origin(h), self.mesh.destination(h));
+        let ((near, near_side), (far, far_side)) = (self.corner(h), self.corner(g));
+        let diagonal = self.mesh.flip(h);
+        let ((t, k), (u, j)) = (twin_code(h), twin_code(g));
+        // Corners from k on: near, right, far in t; far, left, near in u.
+        for (i, side) in [near_side, -1, far_side].into_iter().enumerate() {
+            self.sides[t][(k + i) % 3] = side;
+        }
+        for (i, side) in [far_side, 1, near_side].into_iter().enumerate() {
+            self.sides[u][(j + i) % 3] = side;
+        }
+        if near_side != 1 && far_side != 1 {
+            self.owner[t] = NONE;
+        }
+        if near_side != -1 && far_side != -1 {
+            self.owner[u] = NONE;
+        }
+        if near_side == 0 && far_side == 0 {
+            self.mesh.set_constrained(diagonal, true);
+            self.remaining -= 1;
+        }
+        for (v, spoke) in [(right, h), (left, g), (far, diagonal), (near, self.mesh.twin(diagonal))] {
+            self.spokes[v as usize] = spoke;
+        }
+        for v in [right, left] {
+            self.degrees[v as usize] -= 1;
+        }
+        for v in [near, far] {
+            self.degrees[v as usize] += 1;
+        }
+    }
+}

@@ -1,0 +1,282 @@
+//! Sub-constraints become edges by flips. [QCT] section 4, algorithm 4: the outer loop.
+//!
+//! An *outer round*:
+//!
+//! 1. Each sub-constraint that does not own its whole chain yet leaves the star of one of its ends. If it is an edge, it
+//!    becomes a constrained one and is done.
+//! 2. The others walk and claim each triangle that they cross; of all that claim it, the sub-constraint with the least
+//!    [`priority`] owns it, and the triangle remembers on which side of its owner each corner lies.
+//! 3. A few inner rounds flip pairs of triangles with the same owner (see the module `inner`).
+//!
+//! The sub-constraint with the least priority owns its whole chain, so that it is inserted by inner rounds alone ([QCT]
+//! Claim 1), and every outer round flips or inserts something: a round that does neither ends the loop with an error, as
+//! does the bound on rounds.
+//!
+//! Departures from the paper:
+//!
+//! - Ownership stays from one outer round to the next. It stays right: a flip replaces two triangles that their owner
+//!   crosses, so who crosses the new ones has crossed the old ones. A sub-constraint that owns its whole chain keeps it
+//!   to the end and need not walk again; only the others do.
+//! - The least hash of the id wins, not the least id.
+//! - A walk begins at the end with fewer edges, which makes all beginnings together linear: sub-constraints that do not
+//!   cross form a planar graph.
+//! - A sub-constraint that meets a constrained edge or a vertex is an error with their names. Crossings are to be found
+//!   before, by [`crossings`](super::crossings()): here some are met only after others have been inserted.
+
+use super::configuration::Side;
+use super::fan::{Departure, depart_by_turning, enter, leave};
+use super::inner::{Inner, Trial};
+use crate::{ConstrainError, InsertReport};
+use glam::DVec2;
+use polder_flip::priority;
+use polder_mesh::{GhostMesh, NONE, twin_code};
+use polder_predicates::Sign;
+
+/// Inner rounds to an outer one. Measured on 10,000 long constraints among 100,000 points: see [`insert`].
+pub const INNER_ROUNDS: u32 = 8;
+
+/// Makes each sub-constraint a constrained edge of the mesh, by flips.
+///
+/// A sub-constraint is a pair of distinct vertices, the lower one first, with no vertex between them; they are sorted,
+/// as [`Walk`](crate::Walk) gives them. They may not cross each other nor a constrained edge that is there already. The
+/// mesh may be any triangulation of a convex hull, Delaunay or not; afterwards it is one that need not be Delaunay.
+///
+/// The result, slots and all, depends on the mesh and the set of sub-constraints alone.
+///
+/// # Errors
+///
+/// [`ConstrainError::Blocked`] and [`ConstrainError::ThroughVertex`] name the lowest sub-constraint of the round at
+/// fault; [`ConstrainError::NotAVertex`], [`ConstrainError::MissingPosition`], [`ConstrainError::Lost`] and
+/// [`ConstrainError::BoundExceeded`] say that the mesh is not what it should be. The mesh is left as it was then.
+pub fn insert(
+    mesh: &mut GhostMesh,
+    positions: &[DVec2],
+    sub_constraints: &[[u32; 2]],
+) -> Result<InsertReport, ConstrainError> {
+    let mut insertion = Insertion::new(mesh, positions, sub_constraints)?;
+    while !insertion.is_done() {
+        insertion.outer_round()?;
+    }
+    Ok(insertion.report())
+}
+
+/// An insertion that is made round by round, for those who want to look at what lies between.
+#[derive(Debug)]
+pub struct Insertion<'a> {
+    pub(super) mesh: &'a mut GhostMesh,
+    pub(super) positions: &'a [DVec2],
+    sub_constraints: &'a [[u32; 2]],
+    /// Sub-constraints that do not own their whole chain, in order.
+    waiting: Vec<u32>,
+    /// How many are not in yet.
+    pub(super) remaining: usize,
+    /// For each triangle the sub-constraint that owns it, or [`NONE`].
+    pub(super) owner: Vec<u32>,
+    /// For each corner of each owned triangle its side of the owner.
+    pub(super) sides: Vec<[Side; 3]>,
+    /// The owned triangles.
+    pub(super) active: Vec<u32>,
+    /// For each vertex a half-edge that begins there, and how many do.
+    pub(super) spokes: Vec<u32>,
+    pub(super) degrees: Vec<u32>,
+    pub(super) inner: Inner,
+    inner_rounds: u32,
+    bound: u64,
+    pub(super) report: InsertReport,
+}
+
+impl<'a> Insertion<'a> {
+    /// Nothing done yet.
+    ///
+    /// # Errors
+    ///
+    /// [`ConstrainError::NotAVertex`], [`ConstrainError::MissingPosition`].
+    pub fn new(
+        mesh: &'a mut GhostMesh,
+        positions: &'a [DVec2],
+        sub_constraints: &'a [[u32; 2]],
+    ) -> Result<Self, ConstrainError> {
+        super::check_positions(mesh, positions)?;
+        let spokes = mesh.half_edge_of_vertex(positions.len());
+        for (constraint, &[a, b]) in sub_constraints.iter().enumerate() {
+            let is_vertex = |v: u32| spokes.get(v as usize).is_some_and(|&h| h != NONE);
+            if let Some(vertex) = [a, b].into_iter().find(|&v| !is_vertex(v) || a == b) {
+                return Err(ConstrainError::NotAVertex { constraint, vertex });
+            }
+        }
+        let mut degrees = vec![0; positions.len()];
+        for &v in mesh.triangles.iter().flatten() {
+            if let Some(degree) = degrees.get_mut(v as usize) {
+                *degree += 1;
+            }
+        }
+        let slots = mesh.slots();
+        Ok(Self {
+            mesh,
+            positions,
+            sub_constraints,
+            waiting: (0..sub_constraints.len() as u32).collect(),
+            remaining: sub_constraints.len(),
+            owner: vec![NONE; slots],
+            sides: vec![[0; 3]; slots],
+            active: Vec::new(),
+            spokes,
+            degrees,
+            inner: Inner::new(slots),
+            inner_rounds: INNER_ROUNDS,
+            bound: 0,
+            report: InsertReport { sub_constraints: sub_constraints.len() as u64, ..InsertReport::default() },
+        })
+    }
+
+    /// Another number of inner rounds to an outer one than [`INNER_ROUNDS`]. The number shows in which triangulation
+    /// comes out, not in whether it has the constrained edges.
+    pub fn set_inner_rounds(&mut self, rounds: u32) {
+        self.inner_rounds = rounds.max(1);
+    }
+
+    /// Rules other than the stage's own, for tests that show what the rules are for.
+    #[doc(hidden)]
+    pub fn set_trial(&mut self, trial: Trial) {
+        self.inner.trial = trial;
+    }
+
+    /// Whether every sub-constraint is an edge.
+    pub fn is_done(&self) -> bool {
+        self.remaining == 0
+    }
+
+    /// What has been done so far.
+    pub fn report(&self) -> InsertReport {
+        self.report
+    }
+
+    /// The mesh as it is now.
+    pub fn mesh(&self) -> &GhostMesh {
+        self.mesh
+    }
+
+    /// One outer round with its inner rounds.
+    ///
+    /// # Errors
+    ///
+    /// As [`insert`].
+    pub fn outer_round(&mut self) -> Result<(), ConstrainError> {
+        let before = (self.report.all_flips(), self.remaining);
+        self.mark()?;
+        for _ in 0..self.inner_rounds {
+            if self.inner_round() == 0 {
+                break;
+            }
+        }
+        let stuck = before == (self.report.all_flips(), self.remaining);
+        let rounds = self.report.outer_rounds;
+        if self.remaining > 0 && (stuck || rounds >= self.bound) {
+            return Err(ConstrainError::BoundExceeded { rounds, remaining: self.remaining });
+        }
+        Ok(())
+    }
+
+    /// Steps 1 and 2 of an outer round.
+    ///
+    /// # Errors
+    ///
+    /// As [`insert`].
+    pub fn mark(&mut self) -> Result<(), ConstrainError> {
+        // Step 1: all edges first, so that none is flipped away by a walk of this round.
+        let mut walkers = Vec::with_capacity(self.waiting.len());
+        for s in std::mem::take(&mut self.waiting) {
+            let ends = self.sub_constraints[s as usize];
+            let [a, b] = ends;
+            let reversed = self.degrees[b as usize] < self.degrees[a as usize];
+            let (from, to) = if reversed { (b, a) } else { (a, b) };
+            match depart_by_turning(self.mesh, self.positions, self.spokes[from as usize], to) {
+                Some(Departure::Across(h)) => walkers.push((s, h)),
+                Some(Departure::Along(h)) if self.mesh.destination(h) == to => {
+                    self.mesh.set_constrained(h, true);
+                    self.remaining -= 1;
+                    self.report.edges_already += u64::from(self.report.outer_rounds == 0);
+                }
+                Some(Departure::Along(h)) => {
+                    let vertex = self.mesh.destination(h);
+                    return Err(ConstrainError::ThroughVertex { sub_constraint: ends, vertex });
+                }
+                None => return Err(ConstrainError::Lost { ends }),
+            }
+        }
+
+        // Step 2.
+        let mut lengths = Vec::with_capacity(walkers.len());
+        for &(s, h) in &walkers {
+            lengths.push(self.claim(s, h)?);
+        }
+        if self.report.outer_rounds == 0 {
+            self.report.intersections = lengths.iter().sum();
+            // No family of inputs is known to need a tenth of this: chains grow shorter side by side.
+            self.bound = 64 + 4 * (self.report.intersections + self.sub_constraints.len() as u64);
+        }
+        self.report.walked += lengths.iter().sum::<u64>();
+        self.report.outer_rounds += 1;
+
+        // Who owns less than it crosses walks again in the next round.
+        let mut owned = vec![0u64; walkers.len()];
+        for &t in &self.active {
+            if let Ok(i) = walkers.binary_search_by_key(&self.owner[t as usize], |w| w.0) {
+                owned[i] += 1;
+            }
+        }
+        let short = walkers.iter().zip(lengths.iter().zip(&owned)).filter(|(_, (all, own))| all != own);
+        self.waiting = short.map(|(&(s, _), _)| s).collect();
+        Ok(())
+    }
+
+    /// The walk of one sub-constraint, from half-edge `h` opposite one of its ends; gives the length of its chain.
+    fn claim(&mut self, s: u32, h: u32) -> Result<u64, ConstrainError> {
+        let ends = self.sub_constraints[s as usize];
+        let reversed = self.mesh.apex(h) == ends[1];
+        let line = if reversed { [ends[1], ends[0]] } else { ends }.map(|v| self.positions[v as usize]);
+        let mut h = h;
+        // The corner off the edge by which the triangle is left.
+        let mut near = 0;
+        for length in 1..self.mesh.slots() as u64 {
+            if self.mesh.is_constrained(h) {
+                let mut edge = [self.mesh.origin(h), self.mesh.destination(h)];
+                edge.sort_unstable();
+                return Err(ConstrainError::Blocked { sub_constraint: ends, edge });
+            }
+            // Right of the line lies the origin of h, left of it the destination.
+            let (t, k) = twin_code(h);
+            let mut sides = [0; 3];
+            (sides[k], sides[(k + 1) % 3], sides[(k + 2) % 3]) = (near, -1, 1);
+            self.own(s, t, sides, reversed);
+            let Some((g, side)) = enter(self.mesh, self.positions, h, line) else {
+                return Err(ConstrainError::Lost { ends });
+            };
+            if side == Sign::Zero {
+                let vertex = self.mesh.apex(g);
+                if vertex != ends[usize::from(!reversed)] {
+                    return Err(ConstrainError::ThroughVertex { sub_constraint: ends, vertex });
+                }
+                let (t, k) = twin_code(g);
+                (sides[k], sides[(k + 1) % 3], sides[(k + 2) % 3]) = (0, 1, -1);
+                self.own(s, t, sides, reversed);
+                return Ok(length + 1);
+            }
+            h = leave(g, side);
+            near = side as Side;
+        }
+        Err(ConstrainError::Lost { ends })
+    }
+
+    fn own(&mut self, s: u32, t: usize, sides: [Side; 3], reversed: bool) {
+        let owner = self.owner[t];
+        if owner == s || (owner != NONE && priority(owner) < priority(s)) {
+            return;
+        }
+        if owner == NONE {
+            self.active.push(t as u32);
+        }
+        self.owner[t] = s;
+        self.sides[t] = if reversed { sides.map(|side| -side) } else { sides };
+    }
+}

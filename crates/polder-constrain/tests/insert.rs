@@ -1,0 +1,281 @@
+//! Insertion against the definition, and the claims of [QCT] section 4.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::*;
+use glam::DVec2;
+use polder_constrain::reference::{self, Insertion, Trial, triangle_chain};
+use polder_constrain::{ConstrainError, InsertReport};
+use polder_flip::reference::{flip, sweep};
+use polder_mesh::GhostMesh;
+use proptest::prelude::*;
+
+/// Some triangulation that is not Delaunay in general, a different one for each seed.
+fn some_mesh(positions: &[DVec2], seed: u32) -> GhostMesh {
+    let (mut mesh, _) = sweep(positions).unwrap();
+    let mut active = polder_flip::reference::Active::all(&mesh);
+    for _ in 0..seed % 5 {
+        polder_flip::reference::flip_round(&mut mesh, positions, &mut active);
+    }
+    mesh
+}
+
+fn insert_all(mesh: &mut GhostMesh, positions: &[DVec2], constraints: &[[u32; 2]]) -> InsertReport {
+    let walk = reference::walk(mesh, positions, constraints).unwrap();
+    let report = reference::insert(mesh, positions, &walk.sub_constraints).unwrap();
+    assert_eq!(report.intersections, walk.intersections());
+    assert_eq!(constrained_edges(mesh), walk.sub_constraints);
+    report
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(300) })]
+
+    #[test]
+    fn makes_every_sub_constraint_an_edge((positions, constraints) in grid(8, 60, 40), seed: u32) {
+        let mut mesh = some_mesh(&positions, seed);
+        insert_all(&mut mesh, &positions, &constraints);
+        prop_assert_eq!(check_triangulation(&mesh, &positions), Ok(()));
+        flip(&mut mesh, &positions).unwrap();
+        prop_assert_eq!(check_delaunay(&mesh, &positions), Ok(()));
+    }
+
+    /// The result does not depend on the triangulation at the start, the order and direction of the constraints, the
+    /// number of inner rounds, or whether it was made Delaunay before.
+    #[test]
+    fn one_result_from_everywhere((positions, constraints) in grid(7, 50, 30), seed: u32) {
+        let mut first = delaunay(&positions);
+        reference::constrain(&mut first, &positions, &constraints, 10).unwrap();
+        let expected = canonical(&first, &positions);
+
+        let mut second = some_mesh(&positions, seed);
+        let mut shuffled = constraints.clone();
+        shuffled.sort_by_key(|c| polder_flip::priority(c[0].wrapping_mul(977) ^ c[1] ^ seed));
+        for (i, c) in shuffled.iter_mut().enumerate() {
+            if polder_flip::priority(i as u32 ^ seed).is_multiple_of(2) {
+                c.reverse();
+            }
+        }
+        let walk = reference::walk(&second, &positions, &shuffled).unwrap();
+        let mut insertion = Insertion::new(&mut second, &positions, &walk.sub_constraints).unwrap();
+        insertion.set_inner_rounds(1 + seed % 12);
+        while !insertion.is_done() {
+            insertion.outer_round().unwrap();
+        }
+        flip(&mut second, &positions).unwrap();
+        prop_assert_eq!(canonical(&second, &positions), expected);
+    }
+
+    /// Claim 1: with every flip for one constraint (length of its chain, number in base 3) falls.
+    #[test]
+    fn claim_1_length_and_number_fall((positions, constraints) in grid(12, 70, 4), seed: u32) {
+        let mut mesh = some_mesh(&positions, seed);
+        let walk = reference::walk(&mesh, &positions, &constraints).unwrap();
+        for s in &walk.sub_constraints {
+            let one = std::slice::from_ref(s);
+            follow(&mut mesh, &positions, one, Trial { single_file: true, ..Trial::default() }).map_err(TestCaseError::fail)?;
+        }
+        prop_assert_eq!(check_triangulation(&mesh, &positions), Ok(()));
+    }
+
+    /// Claim 2: k triangles cost at most a number of flips that is quadratic in k. Claim 3: all flips together are at most
+    /// quadratic in the number of points.
+    #[test]
+    fn claims_2_and_3_flips_are_quadratic_at_most((positions, constraints) in grid(20, 120, 30), seed: u32) {
+        let mut mesh = some_mesh(&positions, seed);
+        let walk = reference::walk(&mesh, &positions, &constraints).unwrap();
+        let mut together = 0;
+        for s in &walk.sub_constraints {
+            let k = triangle_chain(&mesh, &positions, *s).unwrap().triangles.len() as u64;
+            let report = reference::insert(&mut mesh, &positions, std::slice::from_ref(s)).unwrap();
+            prop_assert!(report.flips[0] <= k && report.flips[1] <= k, "{report}");
+            prop_assert!(report.flips[2] <= k * k / 2, "{k}: {report}");
+            together += report.all_flips();
+        }
+        let n = positions.len() as u64;
+        prop_assert!(together <= n * n);
+    }
+}
+
+/// Inserts one sub-constraint flip by flip, and says so if (length, number) does not fall.
+fn follow(mesh: &mut GhostMesh, positions: &[DVec2], one: &[[u32; 2]], trial: Trial) -> Result<u32, String> {
+    let mut insertion = Insertion::new(mesh, positions, one).unwrap();
+    insertion.set_trial(trial);
+    insertion.mark().unwrap();
+    let measure = |i: &Insertion<'_>| triangle_chain(i.mesh(), positions, one[0]).unwrap().measure();
+    let mut before = measure(&insertion);
+    let mut risen = 0;
+    while !insertion.is_done() {
+        if insertion.inner_round() == 0 {
+            return Err(format!("no pair is flippable, at {before:?}"));
+        }
+        let after = measure(&insertion);
+        if after >= before {
+            return Err(format!("from {before:?} to {after:?}"));
+        }
+        // The number alone, as a number: leading zeros count for nothing.
+        let number = |digits: &[u8]| {
+            let digits: Vec<u8> = digits.iter().copied().skip_while(|d| *d == 0).collect();
+            (digits.len(), digits)
+        };
+        risen += u32::from(number(&after.1) > number(&before.1));
+        before = after;
+    }
+    Ok(risen)
+}
+
+/// The paper says that the number alone falls; it can rise at a flip of case 1, which makes the chain shorter.
+#[test]
+fn claim_1_needs_the_length() {
+    let single = Trial { single_file: true, ..Trial::default() };
+    let risen: u32 = (0..60)
+        .map(|seed| {
+            let positions = uniform(100, seed);
+            let mut mesh = some_mesh(&positions, seed);
+            let walk = reference::walk(&mesh, &positions, &[[0, 1], [2, 3]]).unwrap();
+            follow(&mut mesh, &positions, &walk.sub_constraints[..1], single).unwrap()
+        })
+        .sum();
+    assert!(risen > 0);
+}
+
+/// Claim 1 without the look at what lies before: flips that make nothing smaller.
+#[test]
+fn claim_1_needs_the_look_ahead() {
+    let blind = Trial { single_file: true, blind: true };
+    let mut failed = 0;
+    for seed in 0..60 {
+        let positions = uniform(100, seed);
+        let mut mesh = some_mesh(&positions, seed);
+        failed += u32::from(follow(&mut mesh, &positions, &[[0, 1]], blind).is_err());
+    }
+    assert!(failed >= 10, "{failed}");
+}
+
+/// Claims 2 and 3 without it: flips back and forth, past any bound.
+#[test]
+fn claims_2_and_3_need_the_look_ahead() {
+    let mut failed = [0; 2];
+    for seed in 0..60 {
+        let positions = uniform(100, seed);
+        let mut mesh = some_mesh(&positions, seed);
+        let k = triangle_chain(&mesh, &positions, [0, 1]).unwrap().triangles.len() as u64;
+        let mut insertion = Insertion::new(&mut mesh, &positions, &[[0, 1]]).unwrap();
+        insertion.set_trial(Trial { blind: true, single_file: true });
+        insertion.mark().unwrap();
+        while !insertion.is_done() && insertion.report().all_flips() <= 100 * 100 {
+            insertion.inner_round();
+        }
+        failed[0] += u32::from(insertion.report().all_flips() > k * k);
+        failed[1] += u32::from(insertion.report().all_flips() > 100 * 100);
+    }
+    assert!(failed[0] > 5 && failed[1] > 5, "{failed:?}");
+}
+
+/// The bad case of [QCT] figure 7 for any k, with its ends: 2k - 1 concave pairs, then 4k - 1 double ones.
+///
+/// A constraint along the x axis. Above it a row of points, below it another, both bulging towards it, so that no three
+/// neighbors in a row make a convex corner. From the first lower point a fan reaches the upper points on the left (the
+/// concave pairs); then a zigzag goes on between both rows (double pairs, no three in a row of which form a convex
+/// pentagon). The one way on in the middle is case 3 at the last concave pair, which pushes it one step to the right;
+/// then the one before it can follow. The ends are eaten away one pair a round, so they are k pairs longer than the
+/// pushing takes.
+fn bad_case(k: usize) -> (GhostMesh, Vec<DVec2>, [u32; 2]) {
+    let (fan, zigzag) = (2 * k, 2 * k);
+    let count = fan + zigzag + 1;
+    let mut positions = vec![DVec2::new(-1.0, 0.0), DVec2::new(count as f64, 0.0)];
+    let row = |x: usize, side: f64| {
+        let off = x as f64 - count as f64 / 2.0;
+        DVec2::new(x as f64, side * (1.0 + off * off / (count * count) as f64))
+    };
+    positions.extend((0..count).map(|x| row(x, 1.0)));
+    positions.extend((fan..count).map(|x| row(x, -1.0)));
+    let upper = |i: usize| 2 + i as u32;
+    let lower = |i: usize| (2 + count + i) as u32;
+    let mut triangles = vec![[0, lower(0), upper(0)]];
+    triangles.extend((0..fan).map(|i| [lower(0), upper(i + 1), upper(i)]));
+    for i in 0..zigzag {
+        triangles.push([lower(i), lower(i + 1), upper(fan + i)]);
+        triangles.push([lower(i + 1), upper(fan + i + 1), upper(fan + i)]);
+    }
+    triangles.push([lower(zigzag), 1, upper(fan + zigzag)]);
+    (close(&triangles), positions, [0, 1])
+}
+
+/// A mesh from counterclockwise triangles whose boundary is one closed line: linked, and joined to the ghost.
+fn close(triangles: &[[u32; 3]]) -> GhostMesh {
+    let n = triangles.len();
+    let mut mesh = GhostMesh::with_slots(n);
+    mesh.triangles.copy_from_slice(triangles);
+    let mut edges: Vec<(u32, u32, u32)> = Vec::new();
+    for h in 0..3 * n as u32 {
+        edges.push((mesh.origin(h), mesh.destination(h), h));
+    }
+    edges.sort_unstable();
+    let find =
+        |edges: &[(u32, u32, u32)], a, b| edges.binary_search_by_key(&(a, b), |e| (e.0, e.1)).ok().map(|i| edges[i].2);
+    let mut border = Vec::new();
+    for &(a, b, h) in &edges {
+        match find(&edges, b, a) {
+            Some(g) => mesh.link(h, g),
+            None => border.push((a, b, h)),
+        }
+    }
+    for (i, &(a, b, h)) in border.iter().enumerate() {
+        mesh.triangles.push([b, a, polder_mesh::GHOST]);
+        mesh.links.push([polder_mesh::NONE; 3]);
+        mesh.constrained.push(0);
+        mesh.link(h, 3 * (n + i) as u32 + 2);
+    }
+    for (i, &(_, b, _)) in border.iter().enumerate() {
+        let following = border.iter().position(|e| e.0 == b).unwrap();
+        mesh.link(3 * (n + i) as u32 + 1, 3 * (n + following) as u32);
+    }
+    mesh
+}
+
+/// The same, but the hull is closed by ghost flips.
+fn bad_mesh(k: usize) -> (GhostMesh, Vec<DVec2>, [u32; 2]) {
+    let (mut mesh, positions, ends) = bad_case(k);
+    mesh.check().unwrap();
+    polder_flip::reference::close_hull(&mut mesh, &positions).unwrap();
+    check_triangulation(&mesh, &positions).unwrap();
+    (mesh, positions, ends)
+}
+
+#[test]
+fn the_bad_case_for_any_k() {
+    for k in [1, 2, 3, 5, 10, 25, 50, 100, 200] {
+        let (mut mesh, positions, ends) = bad_mesh(k);
+        let chain = triangle_chain(&mesh, &positions, ends).unwrap();
+        assert_eq!(chain.to_string(), format!("0{}{}0", "2".repeat(2 * k - 1), "1".repeat(4 * k)));
+        let length = chain.triangles.len() as u64;
+        let report = reference::insert(&mut mesh, &positions, &[ends]).unwrap();
+        check_triangulation(&mesh, &positions).unwrap();
+        assert_eq!(constrained_edges(&mesh), [ends]);
+        // It is bad: quadratic in flips by case 3, linear in rounds; and no worse than that.
+        let k = k as u64;
+        assert!(k < 5 || report.flips[2] >= k * k, "{report}");
+        assert!(report.all_flips() <= length * length && report.inner_rounds <= 4 * length, "{report}");
+    }
+}
+
+#[test]
+fn crossing_constraints_are_an_error_before_any_flip() {
+    let positions = points(&[(0, 0), (4, 0), (4, 4), (0, 4), (2, 1)]);
+    let mut mesh = delaunay(&positions);
+    let before = mesh.clone();
+    let error = reference::constrain(&mut mesh, &positions, &[[0, 2], [1, 3]], 10).unwrap_err();
+    assert_eq!(error.to_string(), "1 pairs of constraints cross, the first are 0 and 1");
+    assert!(matches!(error, ConstrainError::CrossingConstraints(_)));
+    assert_eq!(mesh, before);
+    let error = reference::insert(&mut mesh, &positions, &[[0, 2], [1, 3]]).unwrap_err();
+    assert!(matches!(error, ConstrainError::Blocked { .. }), "{error}");
+    let positions = points(&[(0, 0), (1, 0), (2, 0), (1, 1)]);
+    let mut mesh = delaunay(&positions);
+    let error = reference::insert(&mut mesh, &positions, &[[0, 2]]).unwrap_err();
+    assert_eq!(error, ConstrainError::ThroughVertex { sub_constraint: [0, 2], vertex: 1 });
+    let error = reference::insert(&mut mesh, &positions, &[[0, 1], [2, 2]]).unwrap_err();
+    assert_eq!(error, ConstrainError::NotAVertex { constraint: 1, vertex: 2 });
+}
