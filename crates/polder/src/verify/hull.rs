@@ -2,6 +2,7 @@
 
 use super::mesh::Mesh;
 use super::points::compare;
+use super::stars::Star;
 use super::verdict::{Found, Kind, Place};
 use polder_mesh::next;
 use polder_predicates::{Sign, orient2d};
@@ -15,8 +16,8 @@ struct Cycle {
     turns: i64,
 }
 
-pub(super) fn check(mesh: &Mesh<'_>, found: &mut Found) {
-    let cycles = cycles(mesh);
+pub(super) fn check(mesh: &Mesh<'_>, stars: &[Star], found: &mut Found) {
+    let cycles = cycles(mesh, stars);
     let place = |h: u32| Place::Edge { ends: [mesh.origin(h), mesh.destination(h)], triangle: h / 3 };
     let mut outer = None;
     for cycle in &cycles {
@@ -63,9 +64,10 @@ fn turn(mesh: &Mesh<'_>, [before, after]: [u32; 2]) -> Turn {
 }
 
 /// Cuts the boundary into closed lines: after an edge comes the next boundary edge counterclockwise around its end.
-fn cycles(mesh: &Mesh<'_>) -> Vec<Cycle> {
+fn cycles(mesh: &Mesh<'_>, stars: &[Star]) -> Vec<Cycle> {
     let open = |v: u32| mesh.outgoing(v).map(|out| out.half_edge).filter(|&h| mesh.twin(h).is_none());
-    let mut edges: Vec<u32> = (0..mesh.vertices() as u32).into_par_iter().flat_map_iter(open).collect();
+    let at_boundary = (0..mesh.vertices() as u32).into_par_iter().filter(|&v| stars[v as usize] != Star::Closed);
+    let mut edges: Vec<u32> = at_boundary.flat_map_iter(open).collect();
     edges.par_sort_unstable();
 
     let mut met = vec![false; edges.len()];

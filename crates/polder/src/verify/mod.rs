@@ -55,6 +55,7 @@ pub use verdict::{Kind, LISTED, Place, Problem, Verdict};
 use constraints::Marks;
 use mesh::Mesh;
 use polder_mesh::{Pslg, Triangulation};
+use stars::Star;
 use verdict::Found;
 
 /// Checks the triangles of any mesh against its input.
@@ -110,10 +111,10 @@ fn inspect<'a>(pslg: &'a Pslg, triangles: &'a [[u32; 3]], found: &mut Found) -> 
     let mut mesh = Mesh::new(points, sound);
     stars::drop_repeated(&mut mesh, found);
 
-    let crowded = stars::check(&mesh, found);
+    let stars = stars::check(&mesh, found);
     points::check_used(&mesh, &representatives, triangles, found);
-    if !crowded {
-        hull::check(&mesh, found);
+    if !stars.contains(&Star::Crowded) {
+        hull::check(&mesh, &stars, found);
     }
     let marks = constraints::check(&mesh, &representatives, pslg.constraints(), found);
     delaunay::check(&mesh, &marks, found);

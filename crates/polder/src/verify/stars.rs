@@ -32,39 +32,50 @@ pub(super) fn drop_repeated(mesh: &mut Mesh<'_>, found: &mut Found) {
     mesh.remove(&repeated.iter().map(|pair| pair[1]).collect::<Vec<_>>());
 }
 
-/// Each half-edge has one triangle and each vertex one fan. Says whether any half-edge has more.
-pub(super) fn check(mesh: &Mesh<'_>, found: &mut Found) -> bool {
-    let mut mine = Found::default();
-    mine.sweep(mesh.vertices(), |range, found| {
-        for v in range.start as u32..range.end as u32 {
-            let mut crowded = false;
-            for (before, out) in mesh.outgoing(v).zip(mesh.outgoing(v).skip(1)) {
-                if before.destination == out.destination {
-                    let place = Place::Edge { ends: [v, out.destination], triangle: out.half_edge / 3 };
-                    found.add(Kind::CrowdedEdge, place);
-                    crowded = true;
-                }
-            }
-            if !crowded && mesh.degree(v) > 0 && !is_one_fan(mesh, v) {
-                found.add(Kind::PinchedVertex, Place::Point(v));
-            }
-        }
-    });
-    let crowded = mine.total(Kind::CrowdedEdge) > 0;
-    found.append(mine);
-    crowded
+/// How the triangles lie around a vertex.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Star {
+    /// All around it, in one turn (or there are none).
+    Closed,
+    /// In one fan, from one boundary edge to another.
+    Open,
+    /// In several fans.
+    Pinched,
+    /// Some edge out of it has more than one triangle on its left.
+    Crowded,
 }
 
-/// Whether the triangles around a vertex are one fan or one full turn: count them counterclockwise from one of them
-/// and, if that ends at a boundary, clockwise too.
-fn is_one_fan(mesh: &Mesh<'_>, v: u32) -> bool {
+/// Each half-edge has one triangle and each vertex one fan.
+pub(super) fn check(mesh: &Mesh<'_>, found: &mut Found) -> Vec<Star> {
+    let stars: Vec<_> = (0..mesh.vertices() as u32).into_par_iter().map(|v| star(mesh, v)).collect();
+    for (v, star) in stars.iter().enumerate().filter(|(_, star)| !matches!(star, Star::Closed | Star::Open)) {
+        let v = v as u32;
+        if *star == Star::Pinched {
+            found.add(Kind::PinchedVertex, Place::Point(v));
+        }
+        for (before, out) in mesh.outgoing(v).zip(mesh.outgoing(v).skip(1)) {
+            if before.destination == out.destination {
+                found.add(Kind::CrowdedEdge, Place::Edge { ends: [v, out.destination], triangle: out.half_edge / 3 });
+            }
+        }
+    }
+    stars
+}
+
+/// Counts the triangles around a vertex counterclockwise from one of them and, if that ends at a boundary, clockwise
+/// too.
+fn star(mesh: &Mesh<'_>, v: u32) -> Star {
     let degree = mesh.degree(v);
-    let Some(first) = mesh.outgoing(v).next().map(|out| out.half_edge) else { return true };
+    let Some(first) = mesh.outgoing(v).next().map(|out| out.half_edge) else { return Star::Closed };
+    if mesh.outgoing(v).zip(mesh.outgoing(v).skip(1)).any(|(a, b)| a.destination == b.destination) {
+        return Star::Crowded;
+    }
+    let is_all = |met, whole| if met == degree { whole } else { Star::Pinched };
     let mut met = 1;
     let mut h = first;
     while met <= degree {
         match mesh.find(v, mesh.apex(h)) {
-            Some(other) if other == first => return met == degree,
+            Some(other) if other == first => return is_all(met, Star::Closed),
             Some(other) => h = other,
             None => break,
         }
@@ -78,5 +89,5 @@ fn is_one_fan(mesh: &Mesh<'_>, v: u32) -> bool {
         }
         met += 1;
     }
-    met == degree
+    is_all(met, Star::Open)
 }
