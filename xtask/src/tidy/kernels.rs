@@ -4,7 +4,8 @@ use super::Finding;
 use super::tree::Tree;
 
 /// For `shaders-glsl/<stage>/<kernel>.comp`, the crate `polder-<stage>` has a function `<kernel>` in its `reference`, and
-/// a test `<kernel>` is in that crate or in the workspace's tests.
+/// a test `<kernel>` is in that crate or in the workspace's tests. Kernels that differ in the width of their elements
+/// alone (`sort_u32`, `sort_u64`) may share both (`sort`).
 pub(super) fn check(tree: &Tree) -> Vec<Finding> {
     let mut findings = Vec::new();
     for (path, _) in tree.under("shaders-glsl/") {
@@ -21,14 +22,23 @@ pub(super) fn check(tree: &Tree) -> Vec<Finding> {
             continue;
         }
         let reference = format!("{home}src/reference");
-        if !tree.under(&reference).any(|(_, text)| has_function(text, name)) {
+        if !tree.under(&reference).any(|(_, text)| has_function(text, name) || has_function(text, shared(name))) {
             findings.push(Finding::error(path, format!("no function `{name}` in {reference}")));
         }
-        if !tree.under(&home).chain(tree.under("tests/")).any(|(_, text)| has_test(text, name)) {
+        if !tree
+            .under(&home)
+            .chain(tree.under("tests/"))
+            .any(|(_, text)| has_test(text, name) || has_test(text, shared(name)))
+        {
             findings.push(Finding::error(path, format!("no test `{name}` in {home} or tests/")));
         }
     }
     findings
+}
+
+/// The name without the width of its elements.
+fn shared(name: &str) -> &str {
+    ["_u32", "_u64"].iter().find_map(|width| name.strip_suffix(width)).unwrap_or(name)
 }
 
 fn is_function(line: &str, name: &str) -> bool {
@@ -72,6 +82,14 @@ mod tests {
     fn a_kernel_with_both_passes() {
         assert!(found(&[MANIFEST, KERNEL, REFERENCE, TEST]).is_empty());
         assert!(found(&[("shaders-glsl/include/predicates.glsl", "")]).is_empty());
+    }
+
+    #[test]
+    fn kernels_of_two_widths_may_share_reference_and_test() {
+        let wide = ("shaders-glsl/flip/mark_u64.comp", "");
+        assert!(found(&[MANIFEST, wide, REFERENCE, TEST]).is_empty());
+        let other = ("shaders-glsl/flip/mark_f64.comp", "");
+        assert_eq!(found(&[MANIFEST, other, REFERENCE, TEST]).len(), 2);
     }
 
     #[test]
