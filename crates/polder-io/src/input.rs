@@ -100,14 +100,27 @@ impl Input {
         }
     }
 
-    /// Whether the constraints seem to enclose an area that a user may want alone: there is a hole, or every end of a
-    /// constraint is shared by another one.
+    /// Whether a user may expect a part of the convex hull alone: there is a hole, or the constraints close an outline.
     pub fn has_holes_or_closed_outline(&self) -> bool {
         if !self.holes.is_empty() {
             return true;
         }
-        let mut ends: Vec<u32> = self.pslg.constraints().iter().filter(|[a, b]| a != b).flatten().copied().collect();
-        ends.sort_unstable();
-        !ends.is_empty() && ends.chunk_by(|a, b| a == b).all(|same| same.len() > 1)
+        // Constraints close an outline where one joins two points that earlier ones have joined already.
+        let mut parents: Vec<u32> = (0..self.pslg.points().len() as u32).collect();
+        self.pslg.constraints().iter().filter(|[a, b]| a != b).any(|&[a, b]| {
+            let (a, b) = (root(&mut parents, a), root(&mut parents, b));
+            // Toward the lower number, which halving of paths keeps shallow enough.
+            parents[a.max(b) as usize] = a.min(b);
+            a == b
+        })
     }
+}
+
+/// The root of a point's tree; halves the path to it.
+fn root(parents: &mut [u32], mut v: u32) -> u32 {
+    while parents[v as usize] != v {
+        parents[v as usize] = parents[parents[v as usize] as usize];
+        v = parents[v as usize];
+    }
+    v
 }

@@ -203,7 +203,8 @@ fn a_closed_outline_is_noticed() {
     let ends = |ends: &[[u32; 2]]| Input::new(Pslg::new(vec![DVec2::ZERO; 5], ends.to_vec()).unwrap(), 0);
     assert!(ends(&[[0, 1], [1, 2], [2, 0]]).has_holes_or_closed_outline());
     assert!(ends(&[[0, 1], [1, 2], [2, 0], [3, 3]]).has_holes_or_closed_outline());
-    assert!(!ends(&[[0, 1], [1, 2], [2, 0], [3, 4]]).has_holes_or_closed_outline());
+    assert!(ends(&[[0, 1], [1, 2], [3, 4], [4, 1], [2, 0]]).has_holes_or_closed_outline());
+    assert!(!ends(&[[0, 1], [1, 2], [1, 3], [3, 4], [4, 4]]).has_holes_or_closed_outline());
     assert!(!ends(&[]).has_holes_or_closed_outline());
     let hole = Input { holes: vec![DVec2::ZERO], ..ends(&[]) };
     assert!(hole.has_holes_or_closed_outline());

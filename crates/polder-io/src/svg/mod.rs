@@ -23,6 +23,11 @@ pub mod colors {
     pub const CONSTRAINT: &str = "#c2410c";
     /// Points.
     pub const POINT: &str = "#12343b";
+    /// What deserves a look: debris, points put in or taken out.
+    pub const MARK: &str = "#d6246e";
+    /// Regions of pixels.
+    pub const REGIONS: [&str; 8] =
+        ["#cfe4ec", "#d9ead3", "#f5e7bf", "#e4daee", "#c3d6ee", "#f6d8c9", "#cdeadf", "#ece6d6"];
 }
 
 /// How many points at most are drawn as dots.

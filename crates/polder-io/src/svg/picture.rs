@@ -27,6 +27,25 @@ impl Picture {
         self.raw("Z\"/>\n");
     }
 
+    /// Rectangles of one color, each by two opposite corners, without seams between them.
+    pub fn rectangles(&mut self, rectangles: impl IntoIterator<Item = [DVec2; 2]>, fill: &str) {
+        self.raw("<path shape-rendering=\"crispEdges\" fill=\"").raw(fill).raw("\" d=\"");
+        for [p, q] in rectangles {
+            self.raw("M").at(p).raw("L").at(DVec2::new(q.x, p.y)).raw("L").at(q).raw("L").at(DVec2::new(p.x, q.y));
+            self.raw("Z");
+        }
+        self.raw("\"/>\n");
+    }
+
+    /// Triangles of one color, without seams between them.
+    pub fn triangles(&mut self, triangles: impl IntoIterator<Item = [DVec2; 3]>, fill: &str) {
+        self.raw("<path fill=\"").raw(fill).raw("\" stroke=\"").raw(fill).raw("\" stroke-width=\".5\" d=\"");
+        for [a, b, c] in triangles {
+            self.raw("M").at(a).raw("L").at(b).raw("L").at(c).raw("Z");
+        }
+        self.raw("\"/>\n");
+    }
+
     /// Lines of one color and width, as one path; those too short to be seen are left out.
     pub fn lines(&mut self, lines: impl IntoIterator<Item = [DVec2; 2]>, color: &str, width: f64) {
         let frame = self.frame;
