@@ -4,7 +4,7 @@
 
 use polder::{Backend, Options, triangulate};
 use polder_mesh::{Pslg, Triangulation};
-use polder_tests::{canonical_digest, families, point_families, shuffled};
+use polder_tests::{canonical_digest, constrained_families, families, point_families, shuffled};
 
 fn with(pslg: &Pslg, backend: Backend, threads: usize, name: &str) -> Triangulation {
     let mut options = Options::with_backend(backend);
@@ -74,6 +74,23 @@ fn the_backend_does_not_matter_for_points() {
         for (name, pslg) in point_families(n, 7) {
             same_on_both(name, &pslg);
         }
+    }
+}
+
+#[test]
+fn the_backend_does_not_matter_with_constraints() {
+    for n in SIZES {
+        for (name, pslg) in constrained_families(n, 7) {
+            same_on_both(name, &pslg);
+        }
+    }
+}
+
+#[test]
+#[ignore = "long: cargo xtask ci --long"]
+fn the_backend_does_not_matter_for_large_inputs() {
+    for (name, pslg) in sized(20_000, 8).into_iter().chain(sized(200_000, 9)) {
+        same_on_both(name, &pslg);
     }
 }
 
