@@ -15,6 +15,8 @@ mod sector;
 mod shift;
 mod star;
 mod takeout;
+#[cfg(test)]
+mod tests;
 mod whole;
 
 pub use certify::certify;

@@ -1,6 +1,4 @@
 //! Helpers of this crate's tests.
-#![allow(dead_code, reason = "each test binary uses some of them")]
-#![allow(clippy::unwrap_used, reason = "tests")]
 
 use polder_dualize::reference::Phases;
 use polder_dualize::{DVec2, reference};
@@ -8,41 +6,41 @@ use polder_mesh::{Chains, GhostMesh, Parts, Triangulation};
 use polder_voronoi::Options;
 
 /// A small generator of numbers that needs no package (xorshift64*).
-pub struct Random(u64);
+pub(crate) struct Random(u64);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1)
     }
 
-    pub fn next(&mut self) -> u64 {
+    pub(crate) fn next(&mut self) -> u64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
         self.0.wrapping_mul(0x2545_f491_4f6c_dd1d)
     }
 
-    pub fn below(&mut self, n: u64) -> u64 {
+    pub(crate) fn below(&mut self, n: u64) -> u64 {
         ((u128::from(self.next()) * u128::from(n)) >> 64) as u64
     }
 
     /// In [0, 1).
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    pub fn point(&mut self) -> DVec2 {
+    pub(crate) fn point(&mut self) -> DVec2 {
         DVec2::new(self.unit(), self.unit())
     }
 }
 
 /// Points with integer coordinates below `side`.
-pub fn lattice_points(random: &mut Random, n: usize, width: u64, height: u64) -> Vec<DVec2> {
+pub(crate) fn lattice_points(random: &mut Random, n: usize, width: u64, height: u64) -> Vec<DVec2> {
     (0..n).map(|_| DVec2::new(random.below(width) as f64, random.below(height) as f64)).collect()
 }
 
 /// The canonical Delaunay triangulation by flips from the chain of sorted points: another way than through the grid.
-pub fn by_sweep(points: &[DVec2]) -> Triangulation {
+pub(crate) fn by_sweep(points: &[DVec2]) -> Triangulation {
     let (mut mesh, _) = polder_flip::reference::sweep(points).unwrap();
     polder_flip::reference::flip(&mut mesh, points).unwrap();
     let names: Vec<u32> = (0..points.len() as u32).collect();
@@ -54,7 +52,7 @@ pub fn by_sweep(points: &[DVec2]) -> Triangulation {
 }
 
 /// The canonical Delaunay triangulation through all stages.
-pub fn finish(points: &[DVec2], phases: &Phases) -> Triangulation {
+pub(crate) fn finish(points: &[DVec2], phases: &Phases) -> Triangulation {
     let positions = phases.positions(points);
     let mut mesh = phases.inserted.mesh.clone();
     polder_flip::reference::flip(&mut mesh, &positions).unwrap();
@@ -65,11 +63,11 @@ pub fn finish(points: &[DVec2], phases: &Phases) -> Triangulation {
 }
 
 /// Runs all stages, checks what holds for every input, and returns them.
-pub fn phases(points: &[DVec2]) -> Phases {
+pub(crate) fn phases(points: &[DVec2]) -> Phases {
     phases_with(points, &Options::default())
 }
 
-pub fn phases_with(points: &[DVec2], options: &Options) -> Phases {
+pub(crate) fn phases_with(points: &[DVec2], options: &Options) -> Phases {
     let phases = reference::triangulate(points, options).unwrap_or_else(|e| panic!("{e}: {points:?}"));
     let distinct = |mut of: Vec<u32>| {
         of.sort_unstable();
@@ -84,7 +82,7 @@ pub fn phases_with(points: &[DVec2], options: &Options) -> Phases {
 }
 
 /// Links, the number of triangles of a sphere, and no free slot.
-pub fn check_sphere(mesh: &GhostMesh, vertices: usize) {
+pub(crate) fn check_sphere(mesh: &GhostMesh, vertices: usize) {
     mesh.check().unwrap();
     let expected = if vertices < 2 { 0 } else { 2 * vertices - 2 };
     assert_eq!(mesh.slots(), expected, "{vertices} vertices\n{mesh}");

@@ -1,9 +1,6 @@
 //! Thousands of small inputs with ties and duplicates, against another way to the same triangulation.
-#![allow(clippy::unwrap_used, reason = "tests")]
 
-mod common;
-
-use common::{Random, by_sweep, finish, lattice_points, phases_with};
+use crate::common::{Random, by_sweep, finish, lattice_points, phases_with};
 use polder_dualize::DVec2;
 use polder_voronoi::{Options, Resolution};
 
