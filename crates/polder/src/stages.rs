@@ -119,12 +119,8 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
     if !crossings.pairs.is_empty() || crossings.truncated {
         return Err(crossing(crossings));
     }
-    let constrained = inserted.mesh.clone();
-    let insertion = if walk.sub_constraints.is_empty() {
-        InsertReport::default()
-    } else {
-        return Err(Error::Unsupported { what: "constraints in the reference pipeline, yet".into() });
-    };
+    let mut constrained = inserted.mesh.clone();
+    let insertion = constrain::insert(&mut constrained, &positions, &walk.sub_constraints)?;
     watch.stage(
         "constrain",
         [
