@@ -35,18 +35,18 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<(), String> {
         command.env("RUSTDOCFLAGS", "--deny warnings");
         execute(command)
     })?;
-    let tests = if arguments.long { "tests, long ones too" } else { "tests" };
-    step(tests, || execute(all_tests(root, arguments.long)))?;
+    step("tests", || execute(tests(root, &["--workspace"])))?;
+    if arguments.long {
+        let ignored = ["--workspace", "--lib", "--bins", "--tests", "--", "--ignored"];
+        step("long tests", || execute(tests(root, &ignored)))?;
+    }
     println!("everything passed in {:.0} s", start.elapsed().as_secs_f64());
     Ok(())
 }
 
-/// Unit tests, tests, doctests; no snapshot is accepted or written anew.
-fn all_tests(root: &Path, long: bool) -> Command {
-    let mut command = cargo(root, &["test", "--workspace", "--quiet"]);
-    if long {
-        command.args(["--", "--include-ignored"]);
-    }
-    command.env("INSTA_UPDATE", "no");
+/// Runs tests; no snapshot is accepted or written anew.
+fn tests(root: &Path, arguments: &[&str]) -> Command {
+    let mut command = cargo(root, &["test", "--quiet"]);
+    command.args(arguments).env("INSTA_UPDATE", "no");
     command
 }
