@@ -1,0 +1,404 @@
+//! The command as a user runs it: the built binary, files in a folder, exit codes.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+use serde_json::Value;
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use tempfile::TempDir;
+
+struct Run {
+    code: i32,
+    out: Vec<u8>,
+    err: String,
+}
+
+impl Run {
+    fn text(&self) -> String {
+        String::from_utf8(self.out.clone()).unwrap()
+    }
+
+    /// The JSON object in the last line on standard error.
+    fn error(&self) -> Value {
+        serde_json::from_str(self.err.lines().last().unwrap()).unwrap()
+    }
+}
+
+/// Runs `polder` in a folder; the arguments are separated by blanks.
+fn polder(folder: &Path, args: &str) -> Run {
+    fed(folder, args, b"")
+}
+
+fn fed(folder: &Path, args: &str, input: &[u8]) -> Run {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_polder"));
+    command.args(args.split_whitespace()).current_dir(folder);
+    let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = pipes.spawn().unwrap();
+    // The command may end without reading everything.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    let output = child.wait_with_output().unwrap();
+    Run { code: output.status.code().unwrap(), out: output.stdout, err: String::from_utf8(output.stderr).unwrap() }
+}
+
+fn ok(folder: &Path, args: &str) -> Run {
+    let run = polder(folder, args);
+    assert_eq!(run.code, 0, "{args}: {}", run.err);
+    run
+}
+
+const BOX: &str = "# a box and its diagonal\n4 2 0 0\n1 0 0\n2 4 0\n3 4 3\n4 0 3\n1 0\n1 1 3\n0\n";
+const CROSS: &str = "4 2 0 0\n1 0 0\n2 4 0\n3 4 3\n4 0 3\n3 0\n1 1 3\n2 1 2\n3 2 4\n0\n";
+
+fn folder(files: &[(&str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    files.iter().for_each(|(name, text)| fs::write(folder.path().join(name), text).unwrap());
+    folder
+}
+
+fn names(folder: &Path) -> Vec<String> {
+    let mut names: Vec<_> =
+        fs::read_dir(folder).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn every_output_format_verifies_and_has_the_same_digest() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    ok(dir, "generate segments 500 --segments 60 --seed 3 -o in.poly");
+    let digest = ok(dir, "digest in.poly").text();
+    assert_eq!(digest.trim().len(), 64);
+    for format in ["ele", "tri", "obj", "ply", "vtk"] {
+        ok(dir, &format!("triangulate in.poly -o out.{format}"));
+        let verdict = ok(dir, &format!("verify in.poly out.{format} --canonical")).text();
+        assert_eq!(verdict, format!("out.{format}: valid and canonical\n"));
+        assert_eq!(ok(dir, &format!("digest in.poly out.{format}")).text(), digest);
+    }
+    for backend in ["cpu", "reference"] {
+        assert_eq!(ok(dir, &format!("digest in.poly --backend {backend} --threads 1")).text(), digest, "{backend}");
+    }
+    ok(dir, "triangulate in.poly -o out.svg");
+    assert!(fs::read_to_string(dir.join("out.svg")).unwrap().starts_with("<svg"));
+}
+
+#[test]
+fn triangles_files_are_numbered_as_the_input_and_stand_side_by_side() {
+    let zero = "4 2 0 0\n0 0 0\n1 4 0\n2 4 3\n3 0 3\n1 1\n1 0 2 7\n0\n";
+    let folder = folder(&[("one.poly", BOX), ("zero.poly", zero)]);
+    let dir = folder.path();
+    let read = |name: &str| fs::read_to_string(dir.join(name)).unwrap();
+    ok(dir, "triangulate one.poly -o one.ele --neigh");
+    assert_eq!(read("one.ele"), "2 3 0\n1 1 2 3\n2 1 3 4\n");
+    assert_eq!(read("one.neigh"), "2 3\n1 -1 2 -1\n2 -1 -1 1\n");
+    ok(dir, "triangulate zero.poly -o mesh.ele --edge --node");
+    assert_eq!(read("mesh.ele"), "2 3 0\n0 0 1 2\n1 0 2 3\n");
+    assert_eq!(read("mesh.node"), "4 2 0 0\n0 0 0\n1 4 0\n2 4 3\n3 0 3\n");
+    assert!(read("mesh.edge").contains(" 2 0 7\n"), "{}", read("mesh.edge"));
+    assert_eq!(names(dir), ["mesh.edge", "mesh.ele", "mesh.node", "one.ele", "one.neigh", "one.poly", "zero.poly"]);
+}
+
+#[test]
+fn points_come_from_the_node_file_beside_a_poly() {
+    let folder = folder(&[("x.node", "3 2 0 0\n0 0 0\n1 1 0\n2 0 1\n"), ("x.poly", "0 2 0 0\n1 0\n0 1 2\n0\n")]);
+    ok(folder.path(), "triangulate x.poly -o y.ele");
+    assert_eq!(fs::read_to_string(folder.path().join("y.ele")).unwrap(), "1 3 0\n0 0 1 2\n");
+    // The .node beside the output would be the input itself.
+    let run = polder(folder.path(), "triangulate x.poly -o x.ele --node");
+    assert_eq!(run.code, 2);
+    assert!(run.err.contains("would replace the input"), "{}", run.err);
+}
+
+#[test]
+fn dashes_are_standard_input_and_output() {
+    let folder = folder(&[("x.poly", BOX)]);
+    let dir = folder.path();
+    let run = fed(dir, "triangulate - --from poly -o - --to tri", BOX.as_bytes());
+    assert_eq!((run.code, run.out.len()), (0, 8 + 2 * 12));
+    let verdict = fed(dir, "verify x.poly - --mesh-from tri", &run.out);
+    assert_eq!((verdict.code, verdict.text().as_str()), (0, "-: valid and canonical\n"));
+    let raw = ok(dir, "generate uniform 10 -o - --to pslg").out;
+    assert_eq!(raw.len(), 16 + 160);
+    assert_eq!(fed(dir, "digest - --from pslg", &raw).code, 0);
+    assert_eq!(names(dir), ["x.poly"]);
+}
+
+#[test]
+fn wrong_meshes_are_told_where_they_are_wrong() {
+    let lattice = "9 2 0 0\n1 0 0\n2 1 0\n3 2 0\n4 0 1\n5 1.1 1.2\n6 2 1\n7 0 2\n8 1 2\n9 2 2\n1 0\n1 4 6\n0\n";
+    let folder = folder(&[("in.poly", lattice)]);
+    let dir = folder.path();
+    ok(dir, "triangulate in.poly -o right.ele");
+    let right = fs::read_to_string(dir.join("right.ele")).unwrap();
+    let lines: Vec<&str> = right.lines().skip(1).collect();
+    let write = |triangles: &[String]| {
+        let body: String = triangles.iter().enumerate().map(|(i, t)| format!("{} {t}\n", i + 1)).collect();
+        fs::write(dir.join("wrong.ele"), format!("{} 3 0\n{body}", triangles.len())).unwrap();
+    };
+    let triangles: Vec<String> = lines.iter().map(|line| line.split_once(' ').unwrap().1.to_string()).collect();
+
+    write(&triangles[1..]);
+    let run = polder(dir, "verify in.poly wrong.ele");
+    assert_eq!(run.code, 1);
+    assert!(run.text().starts_with("wrong.ele: not valid\n"), "{}", run.text());
+
+    let mut turned = triangles.clone();
+    let corners: Vec<&str> = triangles[2].split(' ').collect();
+    turned[2] = [corners[0], corners[2], corners[1]].join(" ");
+    write(&turned);
+    let run = polder(dir, "verify in.poly wrong.ele");
+    assert!(run.code == 1 && run.text().contains("triangle 3: it is clockwise"), "{}", run.text());
+
+    write(&[&triangles[..], &triangles[..1]].concat());
+    let run = polder(dir, "verify in.poly wrong.ele --report json");
+    let verdict: Value = serde_json::from_str(&run.text()).unwrap();
+    assert_eq!((run.code, &verdict["valid"]), (1, &Value::Bool(false)));
+    assert!(run.text().contains("repeated_triangle"), "{}", run.text());
+
+    // Valid, but in another order: fine, unless asked for.
+    let mut swapped = triangles.clone();
+    swapped.swap(0, 1);
+    write(&swapped);
+    assert_eq!(polder(dir, "verify in.poly wrong.ele").code, 0);
+    assert_eq!(polder(dir, "verify in.poly wrong.ele --canonical").code, 1);
+
+    fs::write(dir.join("other.obj"), "v 0 0\nv 1 0\nv 5 5\nf 1 2 3\n").unwrap();
+    let run = polder(dir, "verify in.poly other.obj");
+    assert_eq!(run.code, 1);
+    assert!(run.text().contains("vertex 3 of the 3 in other.obj equals no point"), "{}", run.text());
+    assert_eq!(polder(dir, "digest in.poly other.obj").code, 1);
+}
+
+#[test]
+fn errors_have_their_kind_and_exit_code() {
+    let folder = folder(&[
+        ("box.poly", BOX),
+        ("cross.poly", CROSS),
+        ("empty.node", ""),
+        ("lying.node", "4000000000 2 0 0\n1 0 0\n2 1 0\n3 0 1\n"),
+        ("short.node", "3 2 0 0\n1 0 0\n2 1 0\n"),
+        ("range.poly", "2 2 0 0\n1 0 0\n2 1 0\n1 0\n1 1 5\n0\n"),
+        ("nan.node", "2 2 0 0\n1 0 0\n2 nan 0\n"),
+        ("lying.pslg", "\u{1}\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0"),
+        ("binary.vtk", "# vtk DataFile Version 3.0\nx\nBINARY\n"),
+        ("twice.ele", "2 3 0\n1 1 2 3\n2 1 2 4\n"),
+        ("lonely.poly", "0 2 0 0\n1 0\n1 1 2\n0\n"),
+    ]);
+    let dir = folder.path();
+    fs::create_dir(dir.join("dir.ele")).unwrap();
+    let before = names(dir);
+    let cases = [
+        ("triangulate empty.node -o x.ele", 1, "malformed_file", Some(("line", 1))),
+        ("triangulate lying.node -o x.ele", 1, "malformed_file", Some(("line", 1))),
+        ("triangulate short.node -o x.ele", 1, "malformed_file", Some(("line", 3))),
+        ("triangulate lying.pslg -o x.ele", 1, "malformed_file", Some(("byte", 0))),
+        ("digest box.poly twice.ele", 1, "malformed_file", None),
+        ("triangulate range.poly -o x.ele", 1, "index_out_of_range", Some(("line", 5))),
+        ("triangulate nan.node -o x.ele", 1, "non_finite_coordinate", Some(("line", 3))),
+        ("triangulate cross.poly -o x.ele", 1, "crossing_constraints", None),
+        ("digest cross.poly --backend reference", 1, "crossing_constraints", None),
+        ("draw final cross.poly -o x.svg", 1, "crossing_constraints", None),
+        ("triangulate missing.poly -o x.ele", 3, "io", None),
+        ("triangulate lonely.poly -o x.ele", 3, "io", None),
+        ("triangulate box.poly -o missing/x.ele", 3, "io", None),
+        ("triangulate box.poly -o dir.ele", 3, "io", None),
+        ("triangulate dir.ele --from poly -o x.ele", 3, "io", None),
+        ("triangulate box.poly -o x.ele --backend vulkan", 3, "unsupported", None),
+        ("verify box.poly binary.vtk", 3, "unsupported", None),
+        ("generate uniform 9 -o missing/x.node", 3, "io", None),
+    ];
+    for (args, code, kind, place) in cases {
+        let run = polder(dir, &format!("{args} --error-format json"));
+        assert_eq!((run.code, run.error()["kind"].as_str().unwrap()), (code, kind), "{args}: {}", run.err);
+        assert!(!run.error()["message"].as_str().unwrap().is_empty());
+        if let Some((key, value)) = place {
+            assert_eq!(run.error()[key], value, "{args}");
+        }
+        let human = polder(dir, args);
+        assert_eq!(human.code, code);
+        assert!(human.err.starts_with("polder: ") && human.out.is_empty(), "{args}: {}", human.err);
+    }
+    assert_eq!(names(dir), before, "nothing is written where something is wrong");
+}
+
+#[test]
+fn crossing_segments_are_named_by_their_numbers_in_the_file() {
+    let folder = folder(&[("cross.poly", CROSS)]);
+    let run = polder(folder.path(), "triangulate cross.poly -o x.ele --error-format json");
+    assert_eq!(run.error()["pairs"], serde_json::json!([[1, 3]]));
+    assert_eq!(run.error()["truncated"], false);
+    let run = polder(folder.path(), "triangulate cross.poly -o x.ele");
+    assert_eq!(run.err, "polder: 1 pair of segments crosses: 1 and 3\n");
+}
+
+#[test]
+fn wrong_command_lines_exit_with_2() {
+    let folder = folder(&[("box.poly", BOX)]);
+    for args in [
+        "",
+        "triangulate",
+        "triangulate box.poly",
+        "triangulate box.poly -o x.doc",
+        "triangulate box.poly -o x.ele --backend abacus",
+        "triangulate - -o x.ele",
+        "triangulate box.poly -o -",
+        "triangulate box.poly -o x.tri --neigh",
+        "verify - - --from poly --mesh-from tri",
+        "generate uniform many -o x.node",
+        "generate uniform 99999999999 -o x.node",
+        "generate segments 100 -o x.node",
+        "generate lava 100 -o x.node",
+        "draw final box.poly -o x.gif",
+        "draw lava box.poly -o x.svg",
+        "draw final box.poly -o x.png --size 0",
+    ] {
+        let run = polder(folder.path(), args);
+        assert_eq!(run.code, 2, "{args}: {}", run.err);
+        assert!(!run.err.is_empty());
+    }
+    assert_eq!(names(folder.path()), ["box.poly"]);
+    assert_eq!(ok(folder.path(), "--help").err, "");
+    assert!(ok(folder.path(), "--version").text().starts_with("polder 0."));
+}
+
+#[test]
+fn an_output_is_replaced_whole_or_left_as_it_was() {
+    let folder = folder(&[("box.poly", BOX), ("cross.poly", CROSS), ("x.ele", "old"), ("plain", "")]);
+    let dir = folder.path();
+    assert_eq!(polder(dir, "triangulate cross.poly -o x.ele").code, 1);
+    assert_eq!(fs::read_to_string(dir.join("x.ele")).unwrap(), "old");
+    // One of two outputs cannot be written: then neither is.
+    fs::create_dir(dir.join("x.neigh")).unwrap();
+    assert_eq!(polder(dir, "triangulate box.poly -o x.ele --neigh").code, 3);
+    assert_eq!(fs::read_to_string(dir.join("x.ele")).unwrap(), "old");
+    fs::remove_dir(dir.join("x.neigh")).unwrap();
+    ok(dir, "triangulate box.poly -o x.ele");
+    assert!(fs::read_to_string(dir.join("x.ele")).unwrap().starts_with("2 3 0\n"));
+    assert_eq!(names(dir), ["box.poly", "cross.poly", "plain", "x.ele"]);
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        let mode = |name: &str| fs::metadata(dir.join(name)).unwrap().permissions().mode();
+        assert_eq!(mode("x.ele"), mode("plain"), "as any other new file");
+        std::os::unix::fs::symlink("x.ele", dir.join("link.ele")).unwrap();
+        ok(dir, "triangulate box.poly -o link.ele");
+        assert!(fs::symlink_metadata(dir.join("link.ele")).unwrap().is_symlink());
+        ok(dir, "triangulate box.poly -o /dev/null --to ele");
+    }
+}
+
+#[test]
+fn holes_and_outlines_get_one_line_of_warning() {
+    let hole = BOX.replace("\n0\n", "\n1\n1 2 1\n");
+    let outline = "3 2 0 0\n1 0 0\n2 4 0\n3 4 3\n3 0\n1 1 2\n2 2 3\n3 3 1\n0\n";
+    let folder = folder(&[("hole.poly", &hole), ("outline.poly", outline), ("box.poly", BOX)]);
+    for (file, warned) in [("hole", true), ("outline", true), ("box", false)] {
+        let run = ok(folder.path(), &format!("triangulate {file}.poly -o x.tri"));
+        assert_eq!(run.err.lines().filter(|line| line.contains("whole convex hull")).count(), warned as usize);
+        assert_eq!(run.err.lines().count(), 1 + warned as usize, "{}", run.err);
+        assert_eq!(ok(folder.path(), &format!("triangulate {file}.poly -o x.tri --quiet")).err, "");
+    }
+}
+
+#[test]
+fn the_report_says_what_became_of_everything() {
+    let input = "6 2 0 0\n1 0 0\n2 4 0\n3 4 3\n4 0 3\n5 4 3\n6 2 0\n4 0\n1 1 2\n2 2 1\n3 3 5\n4 4 1\n0\n";
+    let folder = folder(&[("x.poly", input)]);
+    let report: Value =
+        serde_json::from_str(&ok(folder.path(), "triangulate x.poly -o x.tri --report json").text()).unwrap();
+    assert_eq!(report["points"], serde_json::json!({"total": 6, "vertices": 5, "duplicates": 1}));
+    assert_eq!(report["triangles"], 3);
+    assert_eq!(report["constraints"]["zero_length"], serde_json::json!([2]));
+    assert_eq!(report["constraints"]["repeated"], serde_json::json!([1]));
+    assert_eq!(report["constraints"]["through_vertices"], 2);
+    assert!(!report["stages"].as_array().unwrap().is_empty());
+}
+
+#[test]
+fn a_seed_gives_the_same_file_and_every_family_can_be_triangulated() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    let families = [
+        "uniform",
+        "gaussian",
+        "clusters",
+        "exponential",
+        "circle",
+        "cocircular",
+        "concentric",
+        "lattice",
+        "collinear",
+        "near-collinear",
+        "huge",
+        "tiny",
+        "mixed",
+        "segments",
+        "spiral",
+        "comb",
+        "fan",
+    ];
+    for family in families {
+        ok(dir, &format!("generate {family} 200 -o a.poly --seed 5"));
+        ok(dir, &format!("generate {family} 200 -o b.pslg --seed 5"));
+        assert_eq!(ok(dir, "digest a.poly").text(), ok(dir, "digest b.pslg").text(), "{family}");
+        ok(dir, "triangulate a.poly -o a.obj");
+        ok(dir, "verify a.poly a.obj --canonical");
+    }
+    ok(dir, "generate uniform 5 -o a.node --seed 1");
+    ok(dir, "generate uniform 5 -o b.node --seed 2");
+    assert_ne!(fs::read(dir.join("a.node")).unwrap(), fs::read(dir.join("b.node")).unwrap());
+    ok(dir, "generate lattice 12 --width 4 -o l.node");
+    assert!(fs::read_to_string(dir.join("l.node")).unwrap().contains("12 3 2"));
+}
+
+#[test]
+fn every_stage_can_be_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    for (family, n) in
+        [("segments", 60), ("circle", 100), ("collinear", 9), ("uniform", 0), ("uniform", 1), ("huge", 9)]
+    {
+        ok(dir, &format!("generate {family} {n} -o in.poly"));
+        for stage in ["voronoi", "dualized", "shifted", "inserted", "constrained", "final"] {
+            ok(dir, &format!("draw {stage} in.poly -o out.svg"));
+            let svg = fs::read_to_string(dir.join("out.svg")).unwrap();
+            assert!(svg.starts_with("<svg") && svg.ends_with("</svg>\n"));
+            assert!(!svg.contains("NaN") && !svg.contains("inf"), "{family} {n} {stage}");
+            ok(dir, &format!("draw {stage} in.poly -o out.png --size 100"));
+            assert!(fs::read(dir.join("out.png")).unwrap().starts_with(b"\x89PNG"));
+        }
+    }
+    ok(dir, "generate uniform 50 -o in.poly");
+    ok(dir, "draw voronoi in.poly --grid 64 -o fine.svg");
+    assert!(fs::read_to_string(dir.join("fine.svg")).unwrap().contains("<title>64 x"));
+}
+
+/// An interrupt ends the command with exit code 4, and leaves nothing behind.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_cancels() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_polder"));
+    command.args(["triangulate", "-", "--from", "node", "-o", "x.ele", "--error-format", "json"]);
+    command.current_dir(folder.path()).stdin(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    stdin.write_all(b"1000000 2 0 0\n1 0 0\n").unwrap();
+    // Until the handler is in place an interrupt would end it without a word.
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let id = child.id().to_string();
+    assert!(Command::new("kill").args(["-INT", &id]).status().unwrap().success());
+    // It may be waiting for a line when the interrupt comes, and looks at the flag before it waits for the next one.
+    for i in 2..1000 {
+        if stdin.write_all(format!("{i} {i} 0\n").as_bytes()).is_err() {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(1));
+    }
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(4));
+    let error: Value = serde_json::from_slice(&output.stderr).unwrap();
+    assert_eq!(error["kind"], "cancelled");
+    assert!(names(folder.path()).is_empty());
+}
