@@ -21,7 +21,8 @@ const LOWEST: i32 = -140;
 const HIGHEST: i32 = 199;
 
 /// Two to the `exponent`, which must lie between -1022 and 1023.
-fn power_of_two(exponent: i32) -> f64 {
+#[inline(always)]
+pub(crate) fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent + 1023) as u64) << 52)
 }
 

@@ -28,7 +28,9 @@
 //! 2. [`integers`]: machine integers of 64, 128 and 256 bits for coordinates that are multiples of a common power of two
 //!    not too far below them: lattices, and close calls between ordinary numbers.
 //! 3. [`expansions`]: the adaptive predicates of the `robust` crate, inside the exponent range where they are exact.
-//! 4. [`limbs`]: fixed-point numbers of `u32` limbs, which take whatever is left.
+//! 4. [`wide`]: `f64` mantissas with exponents that cannot run out, and an error bound again: points whose magnitudes
+//!    have nothing in common, as long as they are not nearly on one line or circle.
+//! 5. [`limbs`]: fixed-point numbers of `u32` limbs, which take whatever is left.
 #![forbid(unsafe_code)]
 
 use glam::DVec2;
@@ -38,6 +40,7 @@ pub mod filter;
 pub mod integers;
 pub mod limbs;
 pub mod tiebreak;
+pub mod wide;
 
 pub use tiebreak::{incircle_canonical, lexicographic, must_flip};
 
@@ -124,7 +127,10 @@ pub fn incircle(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
 #[cold]
 #[inline(never)]
 fn orient2d_exact(a: DVec2, b: DVec2, c: DVec2) -> Sign {
-    integers::orient2d(a, b, c).or_else(|| expansions::orient2d(a, b, c)).unwrap_or_else(|| limbs::orient2d(a, b, c))
+    integers::orient2d(a, b, c)
+        .or_else(|| expansions::orient2d(a, b, c))
+        .or_else(|| wide::orient2d(a, b, c))
+        .unwrap_or_else(|| limbs::orient2d(a, b, c))
 }
 
 #[cold]
@@ -138,6 +144,7 @@ fn incircle_exact(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
 fn incircle_undecided(a: DVec2, b: DVec2, c: DVec2, d: DVec2) -> Sign {
     integers::incircle(a, b, c, d)
         .or_else(|| expansions::incircle(a, b, c, d))
+        .or_else(|| wide::incircle(a, b, c, d))
         .unwrap_or_else(|| limbs::incircle(a, b, c, d))
 }
 

@@ -2,10 +2,11 @@
 
 mod common;
 
-use common::{Random, exact_incircle, exact_orient2d, families, ldexp};
+use common::{Random, exact_incircle, exact_orient2d, families, ldexp, mixed_magnitudes};
 use glam::{DVec2, dvec2};
 use polder_predicates::limbs::{MAX_INCIRCLE_LIMBS, MAX_ORIENT2D_LIMBS, Span};
-use polder_predicates::{Sign, expansions, filter, integers, limbs};
+use polder_predicates::wide::{INCIRCLE_BOUND, ORIENT2D_BOUND};
+use polder_predicates::{Sign, expansions, filter, integers, limbs, wide};
 
 /// How many calls of a family each path decides, in the order of the ladder.
 #[derive(Debug, Default, PartialEq)]
@@ -14,12 +15,13 @@ struct Decided {
     filter: usize,
     integers: usize,
     expansions: usize,
+    wide: usize,
 }
 
 impl Decided {
-    fn check(&mut self, expected: Sign, answers: [Option<Sign>; 4], what: &str) {
+    fn check(&mut self, expected: Sign, answers: [Option<Sign>; 5], what: &str) {
         self.calls += 1;
-        let counts = [&mut self.filter, &mut self.integers, &mut self.expansions];
+        let counts = [&mut self.filter, &mut self.integers, &mut self.expansions, &mut self.wide];
         for (path, answer) in answers.iter().enumerate() {
             assert!(
                 answer.is_none_or(|sign| sign == expected),
@@ -44,6 +46,7 @@ fn all_paths_agree_wherever_they_answer() {
                     filter::orient2d(a, b, c),
                     integers::orient2d(a, b, c),
                     expansions::orient2d(a, b, c),
+                    wide::orient2d(a, b, c),
                     Some(limbs::orient2d(a, b, c)),
                 ],
                 &format!("orient2d {}: {a} {b} {c}", family.name),
@@ -54,6 +57,7 @@ fn all_paths_agree_wherever_they_answer() {
                     filter::incircle(a, b, c, d),
                     integers::incircle(a, b, c, d),
                     expansions::incircle(a, b, c, d),
+                    wide::incircle(a, b, c, d),
                     Some(limbs::incircle(a, b, c, d)),
                 ],
                 &format!("incircle {}: {a} {b} {c} {d}", family.name),
@@ -79,6 +83,13 @@ fn all_paths_agree_wherever_they_answer() {
     }
     let (_, mixed) = of("all exponents");
     assert!(mixed.expansions < 200 && mixed.integers < 200);
+    // Wide exponents do, unless it is a close call.
+    for name in ["all exponents", "mixed magnitudes", "three points together and one far away", "random", "1e300"] {
+        let (orient2d, incircle) = of(name);
+        assert!(orient2d.wide > 1480 && incircle.wide > 1480, "{name}: {orient2d:?} {incircle:?}");
+    }
+    let (orient2d, _) = of("near a line, x far larger than y");
+    assert!(orient2d.wide < orient2d.calls / 2, "{orient2d:?}");
 }
 
 /// The expansions taken outside their window are wrong: the window is needed.
@@ -146,6 +157,83 @@ fn a_filter_with_too_small_a_bound_errs() {
         assert!(filter::incircle(q[0], q[1], q[2], q[3]).is_none_or(|sign| sign == expected));
     }
     assert!(wrong > 0);
+}
+
+/// Neighbors along an axis among many points of mixed magnitudes: what a triangulation of them asks.
+#[test]
+fn wide_exponents_decide_neighbors_of_mixed_magnitudes() {
+    let mut random = Random(16);
+    let mut points: Vec<DVec2> = (0..20_000).map(|_| mixed_magnitudes(&mut random)).collect();
+    let (mut calls, mut orient2d, mut incircle) = (0, 0, 0);
+    for axis in [0, 1] {
+        points.sort_unstable_by(|p, q| p[axis].total_cmp(&q[axis]));
+        for (k, q) in points.windows(4).enumerate() {
+            let [a, b, c, d] = [q[0], q[1], q[2], q[3]];
+            let signs = (wide::orient2d(a, b, c), wide::incircle(a, b, c, d));
+            calls += 1;
+            orient2d += u32::from(signs.0.is_some());
+            incircle += u32::from(signs.1.is_some());
+            if k % 20 == 0 {
+                assert!(signs.0.is_none_or(|sign| sign == exact_orient2d([a, b, c])), "{q:?}");
+                assert!(signs.1.is_none_or(|sign| sign == exact_incircle([a, b, c, d])), "{q:?}");
+            }
+        }
+    }
+    assert!(orient2d * 1000 > calls * 999 && incircle * 1000 > calls * 999, "{orient2d} {incircle} of {calls}");
+}
+
+#[test]
+fn wide_exponents_need_all_four_bases() {
+    let family = families(1000, 17).into_iter().find(|f| f.name.starts_with("three points together"));
+    let family = family.expect("a family of that name");
+    let decided = |turn: usize| {
+        let from = |q: &&[DVec2; 4]| {
+            let [a, b, c, d] = std::array::from_fn(|k| q[(k + turn) % 4]);
+            wide::estimate_incircle(a, b, c, d).sign(INCIRCLE_BOUND).is_some()
+        };
+        family.quadruples.iter().filter(from).count()
+    };
+    for turn in 0..4 {
+        let n = decided(turn);
+        // All but those whose base is the point far away.
+        assert!((600..850).contains(&n), "{n} from base {turn}");
+    }
+}
+
+/// Bounds that are too small by a factor of sixteen let wrong signs through: the tests would notice.
+#[test]
+fn wide_exponents_with_too_small_a_bound_err() {
+    let (mut orient2d, mut incircle) = (0, 0);
+    for family in families(1500, 18) {
+        for &[a, b, c, d] in &family.quadruples {
+            let (estimate, expected) = (wide::estimate_orient2d(a, b, c), exact_orient2d([a, b, c]));
+            assert!(estimate.sign(ORIENT2D_BOUND).is_none_or(|sign| sign == expected), "{a} {b} {c}");
+            orient2d += u32::from(estimate.sign(ORIENT2D_BOUND / 16.0).is_some_and(|sign| sign != expected));
+            let (estimate, expected) = (wide::estimate_incircle(a, b, c, d), exact_incircle([a, b, c, d]));
+            assert!(estimate.sign(INCIRCLE_BOUND).is_none_or(|sign| sign == expected), "{a} {b} {c} {d}");
+            incircle += u32::from(estimate.sign(INCIRCLE_BOUND / 16.0).is_some_and(|sign| sign != expected));
+        }
+    }
+    assert!(orient2d > 0 && incircle > 0, "{orient2d} {incircle}");
+}
+
+#[test]
+fn wide_exponents_know_exact_zeros_and_what_is_not_finite() {
+    let (a, b) = (dvec2(1e300, -1e-300), dvec2(3.0, 5e-324));
+    assert_eq!(wide::orient2d(a, b, a), Some(Sign::Zero));
+    // Every difference in x is zero, and with it every product.
+    let line = [f64::MAX, -f64::MAX, 5e-324, -0.0].map(|y| dvec2(1e-300, y));
+    assert_eq!(wide::incircle(line[0], line[1], line[2], line[3]), Some(Sign::Zero));
+    for x in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+        for (x, y) in [(x, 0.0), (0.0, x), (x, x)] {
+            let p = dvec2(x, y);
+            assert_eq!(wide::orient2d(a, p, b), None);
+            assert_eq!(wide::orient2d(p, p, p), None);
+            assert_eq!(wide::incircle(a, b, p, DVec2::ZERO), None);
+            assert_eq!(wide::incircle(a, a, a, p), None);
+            assert_eq!(wide::incircle(p, p, p, p), None);
+        }
+    }
 }
 
 /// The largest values that each number of bits allows, where a limb too few would show.

@@ -313,7 +313,28 @@ pub fn families(n: usize, seed: u64) -> Vec<Family> {
         let values = [0.0, -0.0, 1.0, -1.0, 1e10];
         from_fn(|_| dvec2(r.pick(&values), r.pick(&values)))
     });
+    add("mixed magnitudes", (true, true), &mut |r| from_fn(|_| mixed_magnitudes(r)));
+    add("three points together and one far away", (true, true), &mut |r| {
+        let base = r.integer(-1000, 300) as i32;
+        let far = base + r.integer(300, 700) as i32;
+        let point = |r: &mut Random, e| dvec2(ldexp(r.unit() - 0.5, e), ldexp(r.unit() - 0.5, e));
+        let mut q = [point(r, base), point(r, base), point(r, base), point(r, far)];
+        r.shuffle(&mut q);
+        q
+    });
+    add("near a line, x far larger than y", (true, true), &mut |r| {
+        from_fn(|_| {
+            let t = r.unit();
+            dvec2(ldexp(t, 300), ldexp(t * 0.3 + 0.1, -300))
+        })
+    });
     list
+}
+
+/// Coordinates of either sign and of any magnitude from 2^-1000 to 2^1000, exponents uniform.
+pub fn mixed_magnitudes(random: &mut Random) -> DVec2 {
+    let mut coordinate = || ldexp(random.pick(&[-1.0, 1.0]) * (1.0 + random.unit()), random.integer(-1000, 999) as i32);
+    dvec2(coordinate(), coordinate())
 }
 
 /// The 24 orders of four things, each with whether it is even.
