@@ -183,7 +183,7 @@ fn wide_exponents_decide_neighbors_of_mixed_magnitudes() {
 }
 
 #[test]
-fn wide_exponents_need_all_four_bases() {
+fn wide_exponents_from_one_base_alone_decide_less() {
     let family = families(1000, 17).into_iter().find(|f| f.name.starts_with("three points together"));
     let family = family.expect("a family of that name");
     let decided = |turn: usize| {
