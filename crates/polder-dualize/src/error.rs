@@ -48,15 +48,21 @@ pub enum DualizeError {
         /// The slot of the first such triangle.
         triangle: usize,
     },
-    /// The hull turns the wrong way at a vertex, or winds round more than once.
-    #[error("{stage}: the hull is not convex at vertex {vertex}, or winds round more than once ({minima} times)")]
+    /// The hull turns right at a vertex, or folds back there.
+    #[error("{stage}: the hull is not convex at vertex {vertex}")]
     HullNotConvex {
         /// The stage whose certificate failed.
         stage: &'static str,
-        /// The vertex at which this was noticed.
+        /// The vertex.
         vertex: u32,
-        /// How many leftmost vertices the hull has; a convex one has one.
-        minima: usize,
+    },
+    /// The hull is nowhere reflex, but winds round more than once.
+    #[error("{stage}: the hull winds round {times} times")]
+    HullWinds {
+        /// The stage whose certificate failed.
+        stage: &'static str,
+        /// How often.
+        times: usize,
     },
     /// A walk through the triangulation did not come to its end.
     #[error("locating point {point}: no end after {steps} steps")]

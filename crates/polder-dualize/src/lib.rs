@@ -25,7 +25,7 @@
 //!
 //! # Sources
 //!
-//! [CET] sections 2 and 3.3; [QCT] sections 3.2 to 3.4. Full entries are in `references.bib`.
+//! \[CET\] sections 2 and 3.3; \[QCT\] sections 3.2 to 3.4. Full entries are in `references.bib`.
 #![forbid(unsafe_code)]
 
 mod error;

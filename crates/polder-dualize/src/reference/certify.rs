@@ -29,7 +29,8 @@ use polder_predicates::{Sign, orient2d};
 ///
 /// # Errors
 ///
-/// [`DualizeError::NotCounterclockwise`], [`DualizeError::HullNotConvex`], [`DualizeError::Broken`].
+/// [`DualizeError::NotCounterclockwise`], [`DualizeError::HullNotConvex`], [`DualizeError::HullWinds`],
+/// [`DualizeError::Broken`].
 pub fn certify(mesh: &GhostMesh, positions: &[DVec2], stage: &'static str) -> Result<(), DualizeError> {
     let at = |v: u32| positions[v as usize];
     let (mut finite, mut ghosts, mut start) = (0, 0, None);
@@ -68,17 +69,14 @@ pub fn certify(mesh: &GhostMesh, positions: &[DVec2], stage: &'static str) -> Re
         let turn = if u == w { Sign::Zero } else { orient2d(p, q, r) };
         let folds = turn == Sign::Zero && before(p, q) != before(q, r);
         if turn == Sign::Negative || folds && (finite > 0 || u != w) {
-            return Err(DualizeError::HullNotConvex { stage, vertex: v, minima });
+            return Err(DualizeError::HullNotConvex { stage, vertex: v });
         }
         h = following;
         if (h == start) != (step == ghosts) {
             return Err(broken(stage, v));
         }
     }
-    if minima != 1 {
-        return Err(DualizeError::HullNotConvex { stage, vertex: mesh.origin(h), minima });
-    }
-    Ok(())
+    if minima == 1 { Ok(()) } else { Err(DualizeError::HullWinds { stage, times: minima }) }
 }
 
 /// From the hull edge of a ghost triangle, as the half-edge opposite the ghost, the next one counterclockwise.

@@ -29,8 +29,8 @@ fn a_hull_that_winds_twice_is_refused() {
     let triangles = around.flat_map(|(i, j)| [[5, i, j], [j, i, GHOST]]).collect();
     let mesh = linked(triangles);
     assert_eq!(mesh.slots(), 2 * 6 - 2);
-    let error = certify(&mesh, &positions, "test").unwrap_err();
-    assert!(matches!(error, DualizeError::HullNotConvex { minima: 2, .. }), "{error}");
+    let expected = DualizeError::HullWinds { stage: "test", times: 2 };
+    assert_eq!(certify(&mesh, &positions, "test"), Err(expected));
 }
 
 #[test]
