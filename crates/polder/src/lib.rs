@@ -67,3 +67,8 @@ pub fn triangulate(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
         }
     }
 }
+
+/// The README's example compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;
