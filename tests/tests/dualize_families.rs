@@ -139,3 +139,19 @@ fn every_large_family_ends_at_the_canonical_triangulation() {
         }
     }
 }
+
+#[test]
+#[ignore = "long: cargo xtask ci --long"]
+fn a_million_points_end_at_the_canonical_triangulation() {
+    let inputs = [
+        ("uniform", polder_io::generate::uniform(1_000_000, 12)),
+        ("clusters", polder_io::generate::clusters(1_000_000, 100, 1e-4, 13)),
+        ("lattice", polder_io::generate::lattice(1000, 1000)),
+        ("circle", polder_io::generate::circle(100_000, 14)),
+        ("exponential", polder_io::generate::exponential(300_000, 15)),
+    ];
+    for (name, pslg) in inputs {
+        let phases = check(name, pslg.points(), &Options::default());
+        assert!(phases.inserted.rounds < 80, "{name}: {} rounds", phases.inserted.rounds);
+    }
+}
