@@ -3,6 +3,7 @@
 
 mod bench;
 mod ci;
+mod shaders;
 mod steps;
 mod tidy;
 
@@ -23,6 +24,8 @@ enum Chore {
     Ci(ci::Arguments),
     /// The rules of the workspace that no compiler knows: who may depend on whom, file sizes, what must be where.
     Tidy,
+    /// Compiles the shaders and generates the typed arguments of every kernel.
+    Shaders(shaders::Arguments),
     /// Builds the benchmarks optimized and runs them.
     Bench(bench::Arguments),
 }
@@ -32,6 +35,7 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().chore {
         Chore::Ci(arguments) => ci::run(root, &arguments),
         Chore::Tidy => tidy::run(root),
+        Chore::Shaders(arguments) => shaders::run(root, &arguments),
         Chore::Bench(arguments) => bench::run(root, &arguments),
     };
     match done {

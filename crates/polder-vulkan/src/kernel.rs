@@ -1,0 +1,162 @@
+//! Kernels: shaders made ready for one device.
+
+use crate::Error;
+use crate::device::{Device, DeviceInner};
+use crate::error::Called;
+use crate::info::Feature;
+use crate::shader::{Code, Shader, Side};
+use ash::vk;
+use std::marker::PhantomData;
+use std::sync::Arc;
+
+pub(crate) struct KernelInner {
+    pub(crate) name: &'static str,
+    pub(crate) pipeline: vk::Pipeline,
+    pub(crate) layout: vk::PipelineLayout,
+    pub(crate) device: Arc<DeviceInner>,
+}
+
+/// A shader, compiled for a device.
+pub struct Kernel<S> {
+    pub(crate) inner: Arc<KernelInner>,
+    workgroup: [u32; 3],
+    of: PhantomData<fn() -> S>,
+}
+
+impl<S> Clone for Kernel<S> {
+    fn clone(&self) -> Self {
+        Kernel { inner: Arc::clone(&self.inner), workgroup: self.workgroup, of: PhantomData }
+    }
+}
+
+impl<S> std::fmt::Debug for Kernel<S> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Kernel({}, workgroup {:?})", self.inner.name, self.workgroup)
+    }
+}
+
+impl<S: Shader> Kernel<S> {
+    /// Compiles, or takes from the cache. `constants` sets specialization constants by name; the others keep their
+    /// defaults. Fails where the device lacks a feature or the workgroup passes its limits.
+    pub fn new(device: &Device, constants: &[(&'static str, u32)]) -> Result<Self, Error> {
+        let code = &S::CODE;
+        let values = specialize(code, constants)?;
+        let workgroup = code.workgroup.map(|side| match side {
+            Side::Fixed(count) => count,
+            Side::Constant(id) => {
+                let place = code.constants.iter().position(|constant| constant.id == id);
+                place.map_or(1, |place| values[place])
+            }
+        });
+        check(device, code, workgroup)?;
+        let (pipeline, layout) = build(&device.inner, code, &values)?;
+        let inner = KernelInner { name: code.name, pipeline, layout, device: Arc::clone(&device.inner) };
+        Ok(Kernel { inner: Arc::new(inner), workgroup, of: PhantomData })
+    }
+
+    /// Invocations of a workgroup along each axis.
+    pub fn workgroup(&self) -> [u32; 3] {
+        self.workgroup
+    }
+}
+
+fn specialize(code: &Code, set: &[(&'static str, u32)]) -> Result<Vec<u32>, Error> {
+    let mut values: Vec<u32> = code.constants.iter().map(|constant| constant.default).collect();
+    for (name, value) in set {
+        let place = code.constants.iter().position(|constant| constant.name == *name);
+        let place = place.ok_or_else(|| refused(code, format!("it has no constant {name}")))?;
+        values[place] = *value;
+    }
+    Ok(values)
+}
+
+fn refused(code: &Code, why: String) -> Error {
+    Error::Recording { command: code.name, why }
+}
+
+fn check(device: &Device, code: &Code, workgroup: [u32; 3]) -> Result<(), Error> {
+    let info = device.info();
+    for feature in code.capabilities.iter().filter_map(|capability| Feature::of_capability(capability)) {
+        if !device.has(feature) {
+            let missing = format!("{feature}, which kernel `{}` needs", code.name);
+            return Err(Error::Unsupported { device: info.name.clone(), missing });
+        }
+    }
+    let invocations = workgroup.iter().fold(1_u64, |product, side| product.saturating_mul(u64::from(*side)));
+    let most = info.limits.workgroup_invocations;
+    if invocations == 0 || invocations > u64::from(most) {
+        return Err(refused(code, format!("a workgroup of {invocations}; the device has up to {most}")));
+    }
+    if !workgroup[0].is_multiple_of(info.limits.subgroup) && code.capabilities.contains(&"GroupNonUniform") {
+        let lanes = info.limits.subgroup;
+        return Err(refused(code, format!("a workgroup of {} is not made of subgroups of {lanes}", workgroup[0])));
+    }
+    Ok(())
+}
+
+fn build(device: &Arc<DeviceInner>, code: &Code, values: &[u32]) -> Result<(vk::Pipeline, vk::PipelineLayout), Error> {
+    device.alive()?;
+    let (words, _) = code.words.as_chunks::<4>();
+    let words: Vec<u32> = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
+    let module = vk::ShaderModuleCreateInfo::default().code(&words);
+    // SAFETY: the device is alive; the words are a valid module, as `cargo xtask shaders` checks.
+    let module = unsafe { device.raw.create_shader_module(&module, None) }.called("vkCreateShaderModule")?;
+    let made = with_module(device, code, values, module);
+    // SAFETY: the module is needed only while the pipeline is made.
+    unsafe { device.raw.destroy_shader_module(module, None) };
+    device.note(made)
+}
+
+fn with_module(
+    device: &Arc<DeviceInner>,
+    code: &Code,
+    values: &[u32],
+    module: vk::ShaderModule,
+) -> Result<(vk::Pipeline, vk::PipelineLayout), Error> {
+    let ranges =
+        [vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::COMPUTE).size(code.argument_bytes)];
+    let layout = vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&ranges);
+    // SAFETY: the device is alive, the range within the 128 bytes that every device has.
+    let layout = unsafe { device.raw.create_pipeline_layout(&layout, None) }.called("vkCreatePipelineLayout")?;
+    let entries: Vec<vk::SpecializationMapEntry> = code
+        .constants
+        .iter()
+        .enumerate()
+        .map(|(place, constant)| {
+            vk::SpecializationMapEntry::default().constant_id(constant.id).offset(4 * place as u32).size(4)
+        })
+        .collect();
+    let specialization = vk::SpecializationInfo::default().map_entries(&entries).data(bytemuck::cast_slice(values));
+    // One size of subgroup, and all of them full: kernels number their invocations by subgroup.
+    let mut subgroup = vk::PipelineShaderStageRequiredSubgroupSizeCreateInfo::default()
+        .required_subgroup_size(device.info.limits.subgroup);
+    let mut stage = vk::PipelineShaderStageCreateInfo::default()
+        .stage(vk::ShaderStageFlags::COMPUTE)
+        .module(module)
+        .name(c"main")
+        .specialization_info(&specialization);
+    if code.capabilities.contains(&"GroupNonUniform") {
+        stage = stage.flags(vk::PipelineShaderStageCreateFlags::REQUIRE_FULL_SUBGROUPS).push_next(&mut subgroup);
+    }
+    let description = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout);
+    // SAFETY: module, layout and cache are of this device and alive.
+    let made = unsafe { device.raw.create_compute_pipelines(device.cache.raw, &[description], None) };
+    match made {
+        Ok(pipelines) => Ok((pipelines[0], layout)),
+        Err((_, result)) => {
+            // SAFETY: nothing was made with it.
+            unsafe { device.raw.destroy_pipeline_layout(layout, None) };
+            Err(result).called("vkCreateComputePipelines")
+        }
+    }
+}
+
+impl Drop for KernelInner {
+    fn drop(&mut self) {
+        // SAFETY: of this device; recordings and engines hold what is in flight alive, so they are in no use.
+        unsafe {
+            self.device.raw.destroy_pipeline(self.pipeline, None);
+            self.device.raw.destroy_pipeline_layout(self.layout, None);
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Device memory: who holds how much, the cap, and estimates before anything is allocated.
+
+use crate::Error;
+use crate::device::{Device, DeviceInner};
+use ash::vk;
+use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
+use gpu_allocator::{AllocationError, MemoryLocation};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+pub(crate) struct Memory {
+    /// Until the device goes: the allocator frees its blocks before that.
+    allocator: Option<Arc<Mutex<Allocator>>>,
+    cap: Option<u64>,
+    used: AtomicU64,
+    peak: AtomicU64,
+}
+
+/// Bytes of device memory that buffers of one device hold, staging included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct MemoryUse {
+    /// Bytes now.
+    pub used: u64,
+    /// The most there ever were.
+    pub peak: u64,
+}
+
+impl Memory {
+    pub(crate) fn new(allocator: Arc<Mutex<Allocator>>, cap: Option<u64>) -> Self {
+        Memory { allocator: Some(allocator), cap, used: AtomicU64::new(0), peak: AtomicU64::new(0) }
+    }
+
+    pub(crate) fn release(&mut self) {
+        self.allocator = None;
+    }
+
+    fn with_allocator<R>(&self, work: impl FnOnce(&mut Allocator) -> R) -> Option<R> {
+        let allocator = self.allocator.as_ref()?;
+        Some(work(&mut allocator.lock().unwrap_or_else(PoisonError::into_inner)))
+    }
+
+    pub(crate) fn usage(&self) -> MemoryUse {
+        MemoryUse { used: self.used.load(Ordering::Relaxed), peak: self.peak.load(Ordering::Relaxed) }
+    }
+}
+
+/// A Vulkan buffer with its memory.
+pub(crate) struct Allocated {
+    pub(crate) buffer: vk::Buffer,
+    pub(crate) bytes: u64,
+    pub(crate) allocation: Option<Allocation>,
+    device: Arc<DeviceInner>,
+}
+
+impl Allocated {
+    /// Allocates at least `bytes`, rounded up to a multiple of 16 so that kernels may read by fours.
+    pub(crate) fn new(
+        device: &Arc<DeviceInner>,
+        name: &'static str,
+        bytes: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+    ) -> Result<Self, Error> {
+        let memory = &device.memory;
+        let bytes = bytes.max(16).checked_next_multiple_of(16).unwrap_or(u64::MAX);
+        let used = memory.used.load(Ordering::Relaxed);
+        let refused = || Error::OutOfMemory { what: name.to_owned(), bytes, used };
+        let limits = &device.info.limits;
+        let largest = limits.buffer_bytes.min(limits.allocation_bytes);
+        if bytes > largest {
+            let what = format!("one buffer, `{name}`");
+            return Err(Error::TooLarge { needed: bytes, available: largest, what });
+        }
+        if device.faults.allocation_fails() || memory.cap.is_some_and(|cap| used.saturating_add(bytes) > cap) {
+            return Err(refused());
+        }
+        let info = vk::BufferCreateInfo::default().size(bytes).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
+        // SAFETY: the device is alive, the description valid: its size is not zero and within the limit.
+        let buffer = unsafe { device.raw.create_buffer(&info, None) }.map_err(|_| refused())?;
+        // SAFETY: the buffer was made from this device.
+        let requirements = unsafe { device.raw.get_buffer_memory_requirements(buffer) };
+        let mut made = Allocated { buffer, bytes, allocation: None, device: Arc::clone(device) };
+        let description = AllocationCreateDesc {
+            name,
+            requirements,
+            location,
+            linear: true,
+            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+        };
+        let allocation = memory.with_allocator(|allocator| allocator.allocate(&description)).ok_or_else(refused)?;
+        let allocation = allocation.map_err(|error| match error {
+            AllocationError::OutOfMemory => refused(),
+            other => Error::OutOfMemory { what: format!("{name} ({other})"), bytes, used },
+        })?;
+        // SAFETY: the memory was allocated for this buffer's requirements and belongs to nothing else.
+        let bound = unsafe { device.raw.bind_buffer_memory(buffer, allocation.memory(), allocation.offset()) };
+        made.allocation = Some(allocation);
+        let now = memory.used.fetch_add(bytes, Ordering::Relaxed) + bytes;
+        memory.peak.fetch_max(now, Ordering::Relaxed);
+        bound.map_err(|_| refused())?;
+        Ok(made)
+    }
+}
+
+impl Drop for Allocated {
+    fn drop(&mut self) {
+        // SAFETY: made from this device; recordings and engines hold what is in flight alive, so it is in no use.
+        unsafe { self.device.raw.destroy_buffer(self.buffer, None) };
+        if let Some(allocation) = self.allocation.take() {
+            let memory = &self.device.memory;
+            memory.used.fetch_sub(self.bytes, Ordering::Relaxed);
+            // Freeing fails only for an allocation of another allocator.
+            let _ = memory.with_allocator(|allocator| allocator.free(allocation));
+        }
+    }
+}
+
+/// What a piece of work will hold at once, asked before any of it is allocated.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Estimate {
+    buffers: Vec<(&'static str, u64)>,
+}
+
+impl Estimate {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Estimate::default()
+    }
+
+    /// With one more buffer.
+    #[must_use]
+    pub fn buffer<T>(mut self, name: &'static str, len: usize) -> Self {
+        let bytes = (len as u64).saturating_mul(size_of::<T>() as u64);
+        self.buffers.push((name, bytes.max(16).checked_next_multiple_of(16).unwrap_or(u64::MAX)));
+        self
+    }
+
+    /// With all buffers of another estimate.
+    #[must_use]
+    pub fn and(mut self, other: Estimate) -> Self {
+        self.buffers.extend(other.buffers);
+        self
+    }
+
+    /// Bytes in all.
+    pub fn bytes(&self) -> u64 {
+        self.buffers.iter().fold(0, |sum: u64, (_, bytes)| sum.saturating_add(*bytes))
+    }
+
+    /// [`Error::TooLarge`] where a buffer passes a limit of the device, or all together the memory that is left.
+    pub fn check(&self, device: &Device) -> Result<(), Error> {
+        let limits = device.info().limits;
+        let largest = limits.buffer_bytes.min(limits.allocation_bytes);
+        if let Some((name, bytes)) = self.buffers.iter().find(|(_, bytes)| *bytes > largest) {
+            let what = format!("one buffer, `{name}`");
+            return Err(Error::TooLarge { needed: *bytes, available: largest, what });
+        }
+        let available = device.available_memory();
+        if self.bytes() > available {
+            let (name, _) = self.buffers.iter().max_by_key(|(_, bytes)| *bytes).copied().unwrap_or_default();
+            let what = format!("all buffers; the largest is `{name}`");
+            return Err(Error::TooLarge { needed: self.bytes(), available, what });
+        }
+        Ok(())
+    }
+}
+
+impl DeviceInner {
+    /// Bytes that may still be allocated: what the driver would give, within the cap.
+    pub(crate) fn available_memory(&self) -> u64 {
+        let used = self.memory.usage().used;
+        let mut left = self.info.memory_bytes.saturating_sub(used);
+        if self.info.memory_budget {
+            let mut budget = vk::PhysicalDeviceMemoryBudgetPropertiesEXT::default();
+            let mut all = vk::PhysicalDeviceMemoryProperties2::default().push_next(&mut budget);
+            // SAFETY: the physical device is of this instance and knows the budget's extension.
+            unsafe { self.instance.inner.raw.get_physical_device_memory_properties2(self.info.physical, &mut all) };
+            let heaps = all.memory_properties;
+            let local = (0..heaps.memory_heap_count as usize)
+                .filter(|heap| heaps.memory_heaps[*heap].flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
+            let free = local.map(|heap| budget.heap_budget[heap].saturating_sub(budget.heap_usage[heap])).max();
+            left = left.min(free.unwrap_or(u64::MAX));
+        }
+        match self.memory.cap {
+            Some(cap) => left.min(cap.saturating_sub(used)),
+            None => left,
+        }
+    }
+}

@@ -1,0 +1,245 @@
+//! Recordings: what stages append their work to. Nothing here touches the device.
+
+use crate::Error;
+use crate::buffer::{BufferInner, View};
+use crate::device::{Device, DeviceInner};
+use crate::kernel::{Kernel, KernelInner};
+use crate::shader::{Encoder, Shader, Touch};
+use bytemuck::Pod;
+use std::sync::Arc;
+
+/// Workgroups of a row of dispatches along x that every device takes.
+const ROW: u64 = 65535;
+
+/// The workgroups that `items` need where one takes `each`, folded over y. Kernels number them by `group_index()` of
+/// `groups.glsl`; the last ones may lie beyond the end.
+pub fn groups_for(items: usize, each: u32) -> [u32; 3] {
+    let wanted = (items as u64).div_ceil(u64::from(each.max(1)));
+    let rows = wanted.div_ceil(ROW);
+    match rows {
+        0 => [0, 0, 0],
+        rows => [wanted.div_ceil(rows) as u32, u32::try_from(rows).unwrap_or(u32::MAX), 1],
+    }
+}
+
+/// Where a value that the device wrote will be found in the report.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ReadBack {
+    pub(crate) first: u32,
+    pub(crate) len: u32,
+}
+
+pub(crate) enum Step {
+    Dispatch { kernel: Arc<KernelInner>, size: Size, arguments: Vec<u8>, touches: Vec<Touch> },
+    Fill { to: Touch, value: u32 },
+    Copy { from: Touch, to: Touch },
+    Read { from: Touch, to: ReadBack },
+    Repeat { name: &'static str, counter: Touch, read: ReadBack, bound: u32, batch: u32, body: Vec<Step> },
+}
+
+pub(crate) enum Size {
+    Direct([u32; 3]),
+    Indirect(Touch),
+}
+
+/// A list of work. Commands run as if one after the other; what does not conflict may overlap.
+///
+/// A command that cannot be makes the whole recording one that cannot be run: [`Engine::run`](crate::Engine::run) then
+/// gives the first such error, so that stages append without asking.
+pub struct Recording {
+    pub(crate) device: Arc<DeviceInner>,
+    pub(crate) steps: Vec<Step>,
+    pub(crate) words: u32,
+    pub(crate) error: Option<Error>,
+}
+
+impl std::fmt::Debug for Recording {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Recording({} commands, error {:?})", self.steps.len(), self.error)
+    }
+}
+
+impl Recording {
+    /// An empty one.
+    pub fn new(device: &Device) -> Self {
+        Recording { device: Arc::clone(&device.inner), steps: Vec::new(), words: 0, error: None }
+    }
+
+    /// Commands at this level; a repeated body counts as one.
+    pub fn len(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// Whether there is nothing to do.
+    pub fn is_empty(&self) -> bool {
+        self.steps.is_empty()
+    }
+
+    /// Runs a kernel in so many workgroups; none is nothing.
+    pub fn dispatch<S: Shader>(&mut self, kernel: &Kernel<S>, groups: [u32; 3], arguments: &S::Args<'_>) {
+        if groups.contains(&0) {
+            return;
+        }
+        let most = self.device.info.limits.workgroups;
+        if (0..3).any(|axis| groups[axis] > most[axis]) {
+            return self.fail(kernel.inner.name, format!("{groups:?} workgroups; the device has up to {most:?}"));
+        }
+        self.push_dispatch(kernel, Size::Direct(groups), arguments);
+    }
+
+    /// Runs a kernel in as many workgroups as the first three words of `groups` say when it is its turn. The kernel
+    /// `dispatch_size` writes such words.
+    pub fn dispatch_indirect<S: Shader>(&mut self, kernel: &Kernel<S>, groups: View<'_, u32>, arguments: &S::Args<'_>) {
+        if groups.len() < 3 {
+            return self.fail(kernel.inner.name, format!("{} words of workgroups; three are needed", groups.len()));
+        }
+        let mut touch = Touch::of(groups, false);
+        touch.end = touch.start + 12;
+        self.owns(kernel.inner.name, &touch.buffer);
+        self.push_dispatch(kernel, Size::Indirect(touch), arguments);
+    }
+
+    fn push_dispatch<S: Shader>(&mut self, kernel: &Kernel<S>, size: Size, arguments: &S::Args<'_>) {
+        let (mut bytes, mut touches) = (Vec::new(), Vec::new());
+        S::encode(arguments, &mut Encoder::new(&S::CODE, &mut bytes, &mut touches));
+        let name = kernel.inner.name;
+        for touch in &touches {
+            self.owns(name, &touch.buffer);
+        }
+        if !Arc::ptr_eq(&kernel.inner.device, &self.device) {
+            self.fail(name, "the kernel is of another device".to_owned());
+        }
+        self.steps.push(Step::Dispatch { kernel: Arc::clone(&kernel.inner), size, arguments: bytes, touches });
+    }
+
+    /// Fills with a word.
+    pub fn fill(&mut self, to: View<'_, u32>, value: u32) {
+        if to.is_empty() {
+            return;
+        }
+        self.owns("fill", &to.buffer.clone());
+        self.steps.push(Step::Fill { to: Touch::of(to, true), value });
+    }
+
+    /// Copies all elements to the first of `to`, which may not overlap them. By the driver's command, which can be much
+    /// slower than memory: [`Copier`](crate::primitives::Copier) is for long arrays.
+    pub fn copy<T: Pod>(&mut self, from: View<'_, T>, to: View<'_, T>) {
+        let bytes = from.bytes();
+        if bytes == 0 {
+            return;
+        }
+        if from.len() > to.len() {
+            return self.fail("copy", format!("{} elements do not fit in {}", from.len(), to.len()));
+        }
+        let apart = to.start + bytes <= from.start || from.start + bytes <= to.start;
+        if Arc::ptr_eq(from.buffer, to.buffer) && !apart {
+            return self.fail("copy", "the ranges overlap".to_owned());
+        }
+        self.owns("copy", from.buffer);
+        self.owns("copy", to.buffer);
+        let mut target = Touch::of(to, true);
+        target.end = target.start + bytes;
+        self.steps.push(Step::Copy { from: Touch::of(from, false), to: target });
+    }
+
+    /// Brings words back with the report. Meant for counts: long arrays come by
+    /// [`Engine::download`](crate::Engine::download). In a repeated body the last round's words remain.
+    pub fn read(&mut self, from: View<'_, u32>) -> ReadBack {
+        let to = self.room(from.len());
+        self.owns("read", from.buffer);
+        if !from.is_empty() {
+            self.steps.push(Step::Read { from: Touch::of(from, false), to });
+        }
+        to
+    }
+
+    fn room(&mut self, words: usize) -> ReadBack {
+        let len = u32::try_from(words).unwrap_or(u32::MAX);
+        let first = self.words;
+        match first.checked_add(len).filter(|end| *end <= 1 << 20) {
+            Some(end) => self.words = end,
+            None => self.fail("read", "more than 2^20 words: use a download".to_owned()),
+        }
+        ReadBack { first, len }
+    }
+
+    /// Repeats `body` until the first word of `counter` is zero after a round, at most `bound` times; then
+    /// [`Error::Bound`]. The word is looked at by the host after every `batch` rounds only, so rounds past the end have
+    /// to do nothing: let them dispatch indirectly, by sizes that are zero then. At least one round runs, if `bound` is
+    /// not zero.
+    pub fn repeat(
+        &mut self,
+        name: &'static str,
+        counter: View<'_, u32>,
+        bound: u32,
+        batch: u32,
+        body: impl FnOnce(&mut Recording),
+    ) {
+        if counter.is_empty() {
+            return self.fail(name, "the counter is empty".to_owned());
+        }
+        self.owns(name, counter.buffer);
+        let mut touch = Touch::of(counter, false);
+        touch.end = touch.start + 4;
+        let read = self.room(1);
+        let mut inner =
+            Recording { device: Arc::clone(&self.device), steps: Vec::new(), words: self.words, error: None };
+        body(&mut inner);
+        self.words = inner.words;
+        if let Some(error) = inner.error {
+            self.error.get_or_insert(error);
+        }
+        let body = inner.steps;
+        self.steps.push(Step::Repeat { name, counter: touch, read, bound, batch: batch.max(1), body });
+    }
+
+    fn owns(&mut self, command: &'static str, buffer: &Arc<BufferInner>) {
+        if !Arc::ptr_eq(&buffer.device, &self.device) {
+            self.fail(command, format!("buffer `{}` is of another device", buffer.name));
+        }
+    }
+
+    pub(crate) fn fail(&mut self, command: &'static str, why: String) {
+        self.error.get_or_insert(Error::Recording { command, why });
+    }
+}
+
+/// Everything that steps use, to be kept while the device works on them.
+pub(crate) fn held(steps: &[Step], buffers: &mut Vec<Arc<BufferInner>>, kernels: &mut Vec<Arc<KernelInner>>) {
+    for step in steps {
+        match step {
+            Step::Dispatch { kernel, size, touches, .. } => {
+                kernels.push(Arc::clone(kernel));
+                buffers.extend(touches.iter().map(|touch| Arc::clone(&touch.buffer)));
+                if let Size::Indirect(touch) = size {
+                    buffers.push(Arc::clone(&touch.buffer));
+                }
+            }
+            Step::Fill { to, .. } => buffers.push(Arc::clone(&to.buffer)),
+            Step::Copy { from, to } => buffers.extend([Arc::clone(&from.buffer), Arc::clone(&to.buffer)]),
+            Step::Read { from, .. } => buffers.push(Arc::clone(&from.buffer)),
+            Step::Repeat { counter, body, .. } => {
+                buffers.push(Arc::clone(&counter.buffer));
+                held(body, buffers, kernels);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_hold_all_and_no_more_than_a_row_too_many() {
+        assert_eq!(groups_for(0, 256), [0, 0, 0]);
+        assert_eq!(groups_for(1, 256), [1, 1, 1]);
+        assert_eq!(groups_for(257, 256), [2, 1, 1]);
+        for items in [65535 * 256, 65535 * 256 + 1, 1 << 27, (1 << 30) + 1, u32::MAX as usize] {
+            let [x, y, z] = groups_for(items, 256);
+            let total = u64::from(x) * u64::from(y);
+            let wanted = (items as u64).div_ceil(256);
+            assert!(x <= 65535 && y <= 65535 && z == 1 && total >= wanted && total < wanted + u64::from(y));
+        }
+    }
+}
