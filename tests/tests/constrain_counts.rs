@@ -51,3 +51,19 @@ fn orders_and_rounds_side_by_side() {
         println!("    {}", timed("flips", || polder_flip::reference::flip(&mut mesh, &positions).unwrap()));
     }
 }
+
+#[test]
+#[ignore = "long: cargo xtask ci --long"]
+fn fan_steps() {
+    for k in [10_000, 40_000] {
+        let start = Start::stage_4(&polder_io::generate::fan(k, 1));
+        let Start { mut mesh, positions, constraints, .. } = start;
+        let walk = timed("walk", || reference::walk(&mesh, &positions, &constraints).unwrap());
+        let crossings = timed("crossings", || reference::crossings(&mesh, &positions, &walk, 1000).unwrap());
+        assert!(crossings.pairs.is_empty());
+        println!("{} {}", walk.sub_constraints.len(), walk.intersections());
+        let report = timed("insert", || reference::insert(&mut mesh, &positions, &walk.sub_constraints).unwrap());
+        println!("    {report}, walked {}", report.walked);
+        println!("    {}", timed("flips", || polder_flip::reference::flip(&mut mesh, &positions).unwrap()));
+    }
+}

@@ -279,3 +279,21 @@ fn crossing_constraints_are_an_error_before_any_flip() {
     let error = reference::insert(&mut mesh, &positions, &[[0, 1], [2, 2]]).unwrap_err();
     assert_eq!(error, ConstrainError::NotAVertex { constraint: 1, vertex: 2 });
 }
+
+/// The chain of one constraint in digits, what was done, and the mesh before and after.
+#[test]
+fn text_forms() {
+    let positions = points(&[(0, 0), (12, 0), (2, 3), (5, 2), (8, 3), (3, -3), (6, -2), (9, -3)]);
+    let mut mesh = delaunay(&positions);
+    let walk = reference::walk(&mesh, &positions, &[[1, 0], [3, 4]]).unwrap();
+    let mut text = format!("{mesh}\n{walk}\n");
+    let mut insertion = Insertion::new(&mut mesh, &positions, &walk.sub_constraints).unwrap();
+    insertion.mark().unwrap();
+    while !insertion.is_done() {
+        text += &format!("chain {}\n", triangle_chain(insertion.mesh(), &positions, [0, 1]).unwrap());
+        insertion.inner_round();
+    }
+    text += &format!("{}\n\n", insertion.report());
+    let report = flip(&mut mesh, &positions).unwrap();
+    insta::assert_snapshot!(format!("{text}{mesh}flipped: {report}"));
+}

@@ -201,7 +201,9 @@ impl Room {
 
 /// The order of two lines along the edge from `u` to `v`, both of which leave across it to its right.
 fn order_along(u: DVec2, v: DVec2, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Ordering {
-    let (of_c, of_d) = (orient2d(a, b, c), orient2d(a, b, d));
+    // An end that both share needs no test, and would need an exact one.
+    let side = |a: DVec2, b: DVec2, c: DVec2| if c == a || c == b { Sign::Zero } else { orient2d(a, b, c) };
+    let (of_c, of_d) = (side(a, b, c), side(a, b, d));
     if of_c != Sign::Negative && of_d != Sign::Negative {
         // The second one lies left of the first, that is towards v.
         return if of_c == of_d && of_c == Sign::Zero { Ordering::Equal } else { Ordering::Less };
@@ -209,7 +211,7 @@ fn order_along(u: DVec2, v: DVec2, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Or
     if of_c != Sign::Positive && of_d != Sign::Positive {
         return Ordering::Greater;
     }
-    let (of_a, of_b) = (orient2d(c, d, a), orient2d(c, d, b));
+    let (of_a, of_b) = (side(c, d, a), side(c, d, b));
     if of_a != Sign::Negative && of_b != Sign::Negative {
         return Ordering::Greater;
     }

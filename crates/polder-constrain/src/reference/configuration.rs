@@ -1,4 +1,4 @@
-//! The kinds of pairs of triangles along a constraint. [QCT] section 4.2, figure 4.
+//! The kinds of pairs of triangles along a constraint. \[QCT\] section 4.2, figure 4.
 
 use super::fan::{Departure, depart_by_turning, enter, leave};
 use crate::ConstrainError;
@@ -23,7 +23,7 @@ pub enum Configuration {
 }
 
 impl Configuration {
-    /// The digit that [QCT] gives it in the number of a chain: 0, 1 or 2.
+    /// The digit that \[QCT\] gives it in the number of a chain: 0, 1 or 2.
     pub fn digit(self) -> u8 {
         match self {
             Self::Zero | Self::Single => 0,
@@ -66,7 +66,7 @@ pub struct TriangleChain {
 }
 
 impl TriangleChain {
-    /// What falls with every flip ([QCT] Claim 1), in lexicographic order: the length, and the number in base 3, its
+    /// What falls with every flip (\[QCT\] Claim 1), in lexicographic order: the length, and the number in base 3, its
     /// first digit first. The number alone can rise at a flip of case 1.
     pub fn measure(&self) -> (usize, Vec<u8>) {
         (self.triangles.len(), self.configurations.iter().map(|c| c.digit()).collect())

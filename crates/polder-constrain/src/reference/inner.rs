@@ -1,9 +1,9 @@
-//! Pairs of triangles with the same owner are flipped. [QCT] section 4, algorithm 5: the inner loop.
+//! Pairs of triangles with the same owner are flipped. \[QCT\] section 4, algorithm 5: the inner loop.
 //!
 //! For a triangle A of a chain, B is the one before it and C the one after it, seen from the lower end of the owner. An
 //! *inner round*:
 //!
-//! 1. The configuration of (A, C) is found for each owned triangle A whose next one has the same owner.
+//! 1. The configuration of (A, C) is found for each listed triangle A whose next one has the same owner.
 //! 2. (A, C) is flippable
 //!    - in case 1, if it is a zero or single intersection;
 //!    - in case 2, if it and (B, A) are double ones, and B and what would then come after it were a single one;
@@ -14,6 +14,11 @@
 //!    has taken.)
 //! 3. Pairs that got all they claimed are flipped. The sides of the corners stay known, so that no test is needed to see
 //!    which of the new triangles the owner crosses; the others are nobody's from then on.
+//! 4. Listed for the next round are the triangles of flips and their neighbors, and the A of pairs that were not flipped.
+//!    (The first list has the triangles that got their owner in the outer round, and their neighbors.)
+//!
+//! Departure from the paper: there all owned triangles are looked at in every round. But whether (A, C) is flippable
+//! depends on A, B and C alone, so that a pair that was not need not be looked at until one of the three has changed.
 //!
 //! What decides about a flip lies within its claimed triangles. So flips of one round may be thought of as made one after
 //! the other, and each makes (length, number) of its chain smaller: see
@@ -51,6 +56,9 @@ pub(super) struct Inner {
     /// For each triangle the least claim, the highest number between rounds.
     claims: Vec<u64>,
     candidates: Vec<Candidate>,
+    /// The triangles A to look at in the next round, and whether a triangle is one of them.
+    work: Vec<u32>,
+    listed: Vec<bool>,
     pub(super) trial: Trial,
 }
 
@@ -62,6 +70,8 @@ impl Inner {
             configurations: vec![None; slots],
             claims: vec![UNCLAIMED; slots],
             candidates: Vec::new(),
+            work: Vec::new(),
+            listed: vec![false; slots],
             trial: Trial::default(),
         }
     }
@@ -77,14 +87,19 @@ impl Insertion<'_> {
     /// One inner round; gives the number of flips.
     pub fn inner_round(&mut self) -> u64 {
         self.report.inner_rounds += 1;
+        let mut work = std::mem::take(&mut self.inner.work);
+        for &t in &work {
+            self.inner.listed[t as usize] = false;
+        }
         // Step 1.
-        for &t in &self.active {
+        work.retain(|&t| self.owner[t as usize] != NONE);
+        for &t in &work {
             self.inner.configurations[t as usize] = self.next_pair(t as usize).map(|(_, c)| c);
         }
         // Step 2.
         let mut candidates = std::mem::take(&mut self.inner.candidates);
         candidates.clear();
-        for &t in &self.active {
+        for &t in &work {
             let Some(candidate) = self.candidate(t as usize) else { continue };
             for triangle in self.claimed(candidate) {
                 let claim = &mut self.inner.claims[triangle as usize];
@@ -104,13 +119,34 @@ impl Insertion<'_> {
                 self.inner.claims[t as usize] = UNCLAIMED;
             }
         }
+        // Step 4.
+        work.clear();
+        self.inner.work = work;
+        for &candidate in &candidates {
+            self.list(candidate.h / 3);
+        }
         for winner in &winners {
             self.flip(winner.h);
             self.report.flips[usize::from(winner.case - 1)] += 1;
         }
         self.inner.candidates = candidates;
-        self.active.retain(|&t| self.owner[t as usize] != NONE);
         winners.len() as u64
+    }
+
+    fn list(&mut self, t: u32) {
+        if !std::mem::replace(&mut self.inner.listed[t as usize], true) {
+            self.inner.work.push(t);
+        }
+    }
+
+    /// Lists a triangle that has changed and its neighbors for the next round.
+    pub(super) fn touch(&mut self, t: u32) {
+        self.list(t);
+        for h in self.mesh.links[t as usize] {
+            if self.owner[(h / 3) as usize] != NONE {
+                self.list(h / 3);
+            }
+        }
     }
 
     fn claimed(&self, c: Candidate) -> impl Iterator<Item = u32> + use<> {
@@ -182,16 +218,19 @@ impl Insertion<'_> {
         for (i, side) in [far_side, 1, near_side].into_iter().enumerate() {
             self.sides[u][(j + i) % 3] = side;
         }
-        if near_side != 1 && far_side != 1 {
-            self.owner[t] = NONE;
-        }
-        if near_side != -1 && far_side != -1 {
-            self.owner[u] = NONE;
-        }
+        let s = self.owner[t];
         if near_side == 0 && far_side == 0 {
             self.mesh.set_constrained(diagonal, true);
             self.remaining -= 1;
         }
+        for (slot, across) in [(t, 1), (u, -1)] {
+            if near_side != across && far_side != across {
+                self.owner[slot] = NONE;
+                self.owned[s as usize] -= 1;
+            }
+        }
+        self.touch(t as u32);
+        self.touch(u as u32);
         for (v, spoke) in [(right, h), (left, g), (far, diagonal), (near, self.mesh.twin(diagonal))] {
             self.spokes[v as usize] = spoke;
         }

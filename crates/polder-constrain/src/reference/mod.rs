@@ -1,9 +1,20 @@
-//! The stage in plain Rust. [QCT] section 4: first [`walk`], then [`crossings()`], then [`insert`], then flips.
+//! The stage in plain Rust. \[QCT\] section 4: first [`walk`](walk()), then [`crossings`](crossings()), then
+//! [`insert`](insert()), then flips.
 //!
-//! # The order of insertion and flips
+//! # Before the flips
 //!
-//! Constraints are inserted into the triangulation as it comes, and one flip to the constrained Delaunay triangulation
-//! follows.
+//! Constraints are inserted into the triangulation as stage 4 leaves it, then one flip to the constrained Delaunay
+//! triangulation follows. The result would be the same after a flip before as well, at a higher price, since flips that
+//! insertion makes useless are made all the same. With constraints of all lengths:
+//!
+//! | points | constraints | order | intersections | flips before | flips to insert | flips after | all |
+//! |---|---|---|---|---|---|---|---|
+//! | 100,000 | 10,000 | insert, flip | 72,453 | - | 69,200 | 29,140 | 98,340 |
+//! | 100,000 | 10,000 | flip, insert, flip | 71,126 | 30,990 | 67,693 | 10,910 | 109,593 |
+//! | 1,000,000 | 100,000 | insert, flip | 726,223 | - | 696,036 | 289,681 | 985,717 |
+//! | 1,000,000 | 100,000 | flip, insert, flip | 713,505 | 303,902 | 681,713 | 111,443 | 1,097,058 |
+//!
+//! So an intersection costs about one flip, before the triangulation is Delaunay as well as after.
 
 mod chords;
 mod configuration;

@@ -1,4 +1,4 @@
-//! All constraints walk the same mesh and are cut at the vertices they run through. [QCT] section 4.1.
+//! All constraints walk the same mesh and are cut at the vertices they run through. \[QCT\] section 4.1.
 //!
 //! 1. Of constraints with the same two ends one walks, from its lower end to its higher one. None of zero length does.
 //! 2. The walk leaves the star of its vertex along an edge, whose other end is then the next vertex, or across the edge

@@ -1,4 +1,4 @@
-//! The stage in plain Rust. [QCT] section 3.5, with hull flips.
+//! The stage in plain Rust. \[QCT\] section 3.5, with hull flips.
 //!
 //! A *round*:
 //!
