@@ -9,7 +9,7 @@
 //!    chord looked at is a crossing found.
 //! 4. A sub-constraint that is an edge of the mesh crosses whatever runs across the edge.
 
-use super::exact::crossing_side;
+use super::exact::{crossing_side, place as place_on};
 use glam::DVec2;
 use polder_predicates::{Sign, orient2d};
 use std::cmp::Ordering;
@@ -44,6 +44,15 @@ impl Chord {
     }
 }
 
+/// A chord where it runs across an edge: about where, how far off that may be, and the line outward.
+#[derive(Clone, Copy)]
+struct Across {
+    chord: u32,
+    place: f64,
+    error: f64,
+    line: [DVec2; 2],
+}
+
 /// A triangle with the positions of its corners, and for each edge whether its half-edge here is the lower one.
 pub(super) struct Place {
     pub(super) corners: [DVec2; 3],
@@ -55,7 +64,7 @@ pub(super) struct Place {
 pub(super) struct Room {
     chords: Vec<Chord>,
     along: Vec<(u32, u8)>,
-    sorted: Vec<u32>,
+    sorted: Vec<Across>,
     ranks: Vec<[u32; 2]>,
     by_begin: Vec<u32>,
     by_end: Vec<u32>,
@@ -114,30 +123,41 @@ impl Room {
             let edge = (corner + 2) % 3;
             let (u, v) = (place.corners[usize::from(corner)], place.corners[usize::from(corner + 1) % 3]);
             self.sorted.clear();
-            self.sorted
-                .extend((0..self.chords.len() as u32).filter(|&i| self.chords[i as usize].ends().contains(&edge)));
+            for (i, chord) in self.chords.iter().enumerate() {
+                let [inward, outward] = chord.ends();
+                if inward == edge || outward == edge {
+                    let [a, b] = line(chord.of);
+                    let line = if outward == edge { [a, b] } else { [b, a] };
+                    let (place, error) = place_on(u, v, line);
+                    self.sorted.push(Across { chord: i as u32, place, error, line });
+                }
+            }
             for &(of, _) in self.along.iter().filter(|(_, k)| *k == edge) {
-                if !self.sorted.iter().all(|&i| found(of, self.chords[i as usize].of)) {
+                if !self.sorted.iter().all(|i| found(of, self.chords[i.chord as usize].of)) {
                     return false;
                 }
             }
-            // Seen from the triangle, all of them outward.
-            let outward = |i: u32| {
-                let chord = self.chords[i as usize];
-                let [a, b] = line(chord.of);
-                if chord.ends()[1] == edge { [a, b] } else { [b, a] }
+            let order = |i: &Across, j: &Across| {
+                let error = i.error + j.error;
+                if i.place + error < j.place {
+                    Ordering::Less
+                } else if j.place + error < i.place {
+                    Ordering::Greater
+                } else {
+                    order_along(u, v, i.line, j.line)
+                }
             };
-            let order = |i: u32, j: u32| order_along(u, v, outward(i), outward(j));
-            self.sorted.sort_unstable_by(|&i, &j| order(i, j));
+            self.sorted.sort_unstable_by(order);
             let mut from = 0;
             for to in 1..=self.sorted.len() {
-                if to < self.sorted.len() && order(self.sorted[to - 1], self.sorted[to]) == Ordering::Equal {
+                if to < self.sorted.len() && order(&self.sorted[to - 1], &self.sorted[to]) == Ordering::Equal {
                     continue;
                 }
                 let equal = &self.sorted[from..to];
-                for (n, &i) in equal.iter().enumerate() {
-                    set(&mut self.ranks[i as usize], rank);
-                    let other = |&j: &u32| found(self.chords[i as usize].of, self.chords[j as usize].of);
+                for (n, i) in equal.iter().enumerate() {
+                    set(&mut self.ranks[i.chord as usize], rank);
+                    let of = |i: &Across| self.chords[i.chord as usize].of;
+                    let other = |j: &Across| found(of(i), of(j));
                     if place.lower[usize::from(edge)] && !equal[n + 1..].iter().all(other) {
                         return false;
                     }

@@ -46,6 +46,20 @@ fn by_filter(u: DVec2, v: DVec2, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Opti
     Some(if (value > 0.0) == (oa > 0.0) { Sign::Positive } else { Sign::Negative })
 }
 
+/// Where the line through `a` and `b` meets the segment from `u` to `v`, whose ends lie on different sides of it: between
+/// 0 at `u` and 1 at `v`, with a bound on the error, which may be infinite.
+///
+/// With areas of n and m at the ends the place is n / (n + m). Errors of at most e and f in them change it by at most
+/// (e + f) / (n + m - e - f); another 8 ε are for the sum and the quotient, and all is doubled.
+pub(super) fn place(u: DVec2, v: DVec2, [a, b]: [DVec2; 2]) -> (f64, f64) {
+    let (Some((n, n_size)), Some((m, m_size))) = (area(a, b, u), area(a, b, v)) else { return (0.5, f64::INFINITY) };
+    let (n, m, error) = (n.abs(), m.abs(), 4.0 * EPSILON * (n_size + m_size));
+    if n + m <= 4.0 * error {
+        return (0.5, f64::INFINITY);
+    }
+    (n / (n + m), 2.0 * (error / (n + m - error) + 8.0 * EPSILON))
+}
+
 fn by_integers(u: DVec2, v: DVec2, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Sign {
     let all = [u, v, a, b, c, d];
     let low = all.iter().flat_map(|p| [p.x, p.y]).filter(|&x| x != 0.0).map(|x| parts(x).2).min().unwrap_or(0);
