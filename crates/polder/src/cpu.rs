@@ -5,10 +5,17 @@ use crate::{Backend, Error, Options, Output, Report};
 use polder_cpu::{CpuError, Delaunay};
 use polder_mesh::Pslg;
 
+/// More threads than this are a mistake, and would only get into each other's way.
+const MAX_THREADS: usize = 1024;
+
 /// Triangulates on the CPU, in a pool of threads of its own where the caller asks for a number of them.
 pub(crate) fn triangulate(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     if options.threads == 0 {
         return run(pslg, options);
+    }
+    if options.threads > MAX_THREADS {
+        let what = format!("{} threads: at most {MAX_THREADS} are possible", options.threads);
+        return Err(Error::Unsupported { what });
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
     let pool = pool.map_err(|e| Error::Unsupported { what: format!("{} threads: {e}", options.threads) })?;

@@ -25,7 +25,7 @@ pub type ProgressFn = Arc<dyn Fn(Progress) + Send + Sync>;
 pub struct Options {
     /// Where to compute.
     pub backend: Backend,
-    /// Threads of the CPU to use; 0 means as many as there are.
+    /// Threads of the CPU to use, at most 1024; 0 means as many as there are.
     pub threads: usize,
     /// The longer side of the pixel grid; none lets the number of points decide. The CPU backend uses no grid.
     pub grid: Option<u32>,

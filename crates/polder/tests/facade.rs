@@ -132,6 +132,8 @@ fn what_cannot_be_had_is_unsupported() {
     let input = generate::uniform(10, 1);
     let vulkan = Options::with_backend(Backend::Vulkan);
     assert_eq!(triangulate(&input, &vulkan).unwrap_err().kind(), "unsupported");
+    let threads = Options { threads: 100_000, ..Options::default() };
+    assert_eq!(triangulate(&input, &threads).unwrap_err().kind(), "unsupported");
     for side in [0, u32::MAX] {
         let grid = Options { grid: Some(side), ..Options::with_backend(Backend::Reference) };
         assert_eq!(triangulate(&input, &grid).unwrap_err().kind(), "unsupported");
