@@ -9,7 +9,7 @@ use polder_constrain::{ConstrainError, reference};
 use polder_io::generate;
 use polder_mesh::Pslg;
 use polder_tests::{canonical_digest, canonical_triangles, constrained_families, shuffled};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 use verify_support::by_spade;
 
 /// From stages 1 to 4, from the Delaunay triangulation, and after a shuffle of points and constraints.
@@ -69,13 +69,14 @@ fn a_missing_constraint_shows() {
 }
 
 fn many(fan: usize, through: usize, along: usize) {
-    // Many constraints at one vertex: none may look at all the others.
+    // Many constraints at one vertex: all walks of all rounds together are a few times as long as the first ones.
     let pslg = generate::fan(fan, 1);
-    let start = Start::stage_4(&pslg);
-    let clock = Instant::now();
-    let fan = start.constrained();
-    assert!(clock.elapsed() < Duration::from_secs(30), "quadratic in the fan? {:?}", clock.elapsed());
-    assert_eq!(fan.chains().iter().map(|c| c.len() - 1).sum::<usize>(), pslg.constraints().len());
+    let mut start = Start::stage_4(&pslg);
+    let (walk, insert, _) = reference::constrain(&mut start.mesh, &start.positions, &start.constraints, 100).unwrap();
+    assert_eq!(walk.sub_constraints.len(), fan);
+    assert!(insert.walked < 16 * insert.intersections, "{insert}, walked {}", insert.walked);
+    let edges = (0..3 * start.mesh.slots() as u32).filter(|&h| h < start.mesh.twin(h) && start.mesh.is_constrained(h));
+    assert_eq!(edges.count(), fan);
 
     // One constraint through many vertices.
     let pslg = generate::through_vertices(through, 2);
@@ -137,5 +138,4 @@ fn crossings_of_ten_million() {
     let crossings = reference::crossings(&start.mesh, &start.positions, &walk, 1000).unwrap();
     println!("walk {walked:?}, crossings {:?}", clock.elapsed() - walked);
     assert_eq!(crossings.pairs.len(), 3, "{crossings}");
-    assert!(clock.elapsed() < Duration::from_secs(120), "{:?}", clock.elapsed());
 }

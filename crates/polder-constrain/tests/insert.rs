@@ -280,6 +280,28 @@ fn crossing_constraints_are_an_error_before_any_flip() {
     assert_eq!(error, ConstrainError::NotAVertex { constraint: 1, vertex: 2 });
 }
 
+/// A mesh that is no triangulation (its vertices moved after it was built) ends with a result or an error, never in a
+/// panic or an endless loop.
+#[test]
+fn a_tangled_mesh_comes_to_an_end() {
+    let mut errors = [0; 2];
+    for seed in 0..300 {
+        let mut mesh = some_mesh(&uniform(40, seed), seed);
+        let tangled = uniform(40, seed + 1000);
+        let constraints: Vec<[u32; 2]> = (0..8).map(|i| [i, 39 - i]).collect();
+        match reference::walk(&mesh, &tangled, &constraints) {
+            Ok(walk) => drop(reference::crossings(&mesh, &tangled, &walk, 10)),
+            Err(error) => {
+                assert!(matches!(error, ConstrainError::Lost { .. }), "{error}");
+                errors[0] += 1;
+            }
+        }
+        errors[1] += u32::from(reference::insert(&mut mesh, &tangled, &constraints[..1 + seed as usize % 8]).is_err());
+        mesh.check().unwrap();
+    }
+    assert!(errors.iter().all(|&n| n > 100), "{errors:?}");
+}
+
 /// The chain of one constraint in digits, what was done, and the mesh before and after.
 #[test]
 fn text_forms() {

@@ -69,7 +69,6 @@ fn crossings_in_chunks(
         pairs.truncate(max_crossings);
     }
     pairs.sort_unstable();
-    pairs.dedup();
     Ok(Crossings { pairs, truncated })
 }
 
