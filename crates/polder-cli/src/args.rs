@@ -4,6 +4,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use polder_io::{InputFormat, MeshFormat};
 use std::path::PathBuf;
 
+const MAX_GRID: i64 = polder_voronoi::MAX_SIDE as i64;
+
 const AFTER: &str = "\
 Exit codes: 0 all went well; 1 the input is at fault, or the mesh is wrong; 2 the command line is at fault; 3 files, \
 device or resources are at fault, or polder itself; 4 cancelled.
@@ -100,12 +102,13 @@ pub(crate) struct WayArgs {
     #[arg(long, default_value = "auto")]
     pub(crate) backend: BackendChoice,
 
-    /// Threads of the CPU to use; 0 for as many as there are
-    #[arg(long, value_name = "N", default_value_t = 0)]
-    pub(crate) threads: usize,
+    /// Threads of the CPU to use, at most 1024; 0 for as many as there are
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1024))]
+    pub(crate) threads: u16,
 
-    /// The longer side of the pixel grid, where the backend has one; the number of points decides if not given
-    #[arg(long, value_name = "N")]
+    /// The longer side of the pixel grid, where the backend has one: 1 to 32768; the number of points decides if not
+    /// given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_GRID))]
     pub(crate) grid: Option<u32>,
 
     /// How many pairs of crossing segments to name at most
@@ -299,8 +302,8 @@ pub(crate) struct DrawArgs {
     #[arg(long, short, value_name = "PICTURE")]
     pub(crate) output: PathBuf,
 
-    /// The longer side of the pixel grid; the number of points decides if not given
-    #[arg(long, value_name = "N")]
+    /// The longer side of the pixel grid, 1 to 32768; the number of points decides if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MAX_GRID))]
     pub(crate) grid: Option<u32>,
 
     /// The longer side of a .png, in pixels

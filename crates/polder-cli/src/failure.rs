@@ -26,7 +26,9 @@ impl Failure {
     }
 
     pub(crate) fn io(path: &Path, error: &std::io::Error) -> Self {
-        Self::new("io", format!("{}: {error}", path.display()))
+        let name =
+            if path == Path::new(crate::job::DASH) { "standard output".into() } else { path.display().to_string() };
+        Self::new("io", format!("{name}: {error}"))
     }
 
     /// An error of the library. Segments are named as the file numbers them, which begins with `first`.
@@ -43,6 +45,7 @@ impl Failure {
                 let message = format!("{more}{} {plural}: {}{rest}", pairs.len(), listed.join(", "));
                 Self::new(kind, message).with("pairs", json!(pairs)).with("truncated", truncated).with("first", first)
             }
+            polder::Error::Cancelled(_) => Self::new(kind, "cancelled"),
             other => Self::new(kind, other.to_string()),
         }
     }

@@ -149,7 +149,14 @@ pub(crate) fn format_of<T>(
 /// Ends with a usage error.
 pub(crate) fn usage(message: &str) -> ! {
     use clap::CommandFactory;
-    crate::args::Cli::command().error(clap::error::ErrorKind::ValueValidation, message).exit()
+    let mut command = crate::args::Cli::command();
+    command.build();
+    // With the usage of the subcommand that was asked for.
+    let named = std::env::args().find(|arg| command.find_subcommand(arg).is_some());
+    if let Some(subcommand) = named.and_then(|name| command.find_subcommand(name).cloned()) {
+        command = subcommand;
+    }
+    command.error(clap::error::ErrorKind::ValueValidation, message).exit()
 }
 
 /// Where an output goes before it is whole.

@@ -94,7 +94,7 @@ fn refuse_overwriting_input(input: &Path, files: &[(PathBuf, &WriteTo<'_>)]) {
 pub(crate) fn compute(job: &Job, input: &Input, way: &WayArgs) -> Result<Output, Failure> {
     let options = Options {
         backend: way.backend.backend(),
-        threads: way.threads,
+        threads: way.threads.into(),
         grid: way.grid,
         max_crossings: way.max_crossings,
         progress: Some(job.progress()),

@@ -252,6 +252,10 @@ fn wrong_command_lines_exit_with_2() {
         "draw final box.poly -o x.gif",
         "draw lava box.poly -o x.svg",
         "draw final box.poly -o x.png --size 0",
+        "draw voronoi box.poly -o x.svg --grid 0",
+        "draw voronoi box.poly -o x.svg --grid 32769",
+        "triangulate box.poly -o x.ele --threads 1025",
+        "triangulate box.poly -o x.ele --threads -1",
     ] {
         let run = polder(folder.path(), args);
         assert_eq!(run.code, 2, "{args}: {}", run.err);
