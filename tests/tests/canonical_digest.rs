@@ -17,7 +17,7 @@ fn with(pslg: &Pslg, backend: Backend, threads: usize, name: &str) -> Triangulat
 fn sized(n: usize, seed: u64) -> Vec<(&'static str, Pslg)> {
     let slow = ["mixed magnitudes", "collinear with constraints"];
     let large = families(n, seed).into_iter().filter(|(name, _)| n < 5000 || !slow.contains(name));
-    let small = families(n / 10, seed).into_iter().filter(|(name, _)| n >= 5000 && slow.contains(name));
+    let small = families(n.min(20_000) / 10, seed).into_iter().filter(|(name, _)| n >= 5000 && slow.contains(name));
     large.chain(small).collect()
 }
 
@@ -89,7 +89,10 @@ fn the_backend_does_not_matter_with_constraints() {
 #[test]
 #[ignore = "long: cargo xtask ci --long"]
 fn the_backend_does_not_matter_for_large_inputs() {
-    for (name, pslg) in sized(20_000, 8).into_iter().chain(sized(200_000, 9)) {
+    // What the reference takes very long for at that size: a fan needs a round for every few of its constraints, a strip
+    // longer than the grid can be needs long rows of flips.
+    let larger = sized(200_000, 9).into_iter().filter(|(name, _)| !["fan", "strip"].contains(name));
+    for (name, pslg) in sized(20_000, 8).into_iter().chain(larger) {
         same_on_both(name, &pslg);
     }
 }
