@@ -4,8 +4,8 @@
 
 mod vulkan_support;
 
-use polder_vulkan::Buffer;
-use polder_vulkan::primitives::{Compact, Copier, Count, Operation, Reduce, Scan, Sort, SortShape, reference};
+use polder_vulkan::primitives::{Compact, Copier, Count, Operation, Reduce, Scan, Sort, SortShape};
+use polder_vulkan::{Buffer, reference};
 use vulkan_support::{Gpu, lengths, wide, words};
 
 #[test]

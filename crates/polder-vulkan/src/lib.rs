@@ -14,7 +14,7 @@
 //!   on the device, and touches no queue.
 //! - [`Engine`]: runs recordings. It puts the narrowest barriers between commands that conflict, submits, waits by a
 //!   timeline semaphore, and turns loss, time-out and lack of memory into an [`Error`].
-//! - [`primitives`]: scan, compaction, reduction, sort; each with its reference in plain Rust, bit for bit the same.
+//! - [`primitives`]: scan, compaction, reduction, sort. [`reference`] is the same in plain Rust, bit for bit.
 //!
 //! # Addresses, not bindings
 //!
@@ -49,6 +49,7 @@ mod memory;
 pub mod primitives;
 mod queries;
 mod recording;
+pub mod reference;
 mod select;
 mod self_test;
 mod shader;

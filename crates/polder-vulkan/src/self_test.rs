@@ -13,6 +13,7 @@ use crate::info::Feature;
 use crate::kernel::Kernel;
 use crate::kernels::{SelfTestF64, SelfTestF64Args};
 use crate::recording::{Recording, groups_for};
+use crate::reference::self_test_f64;
 use std::fmt;
 
 /// Pairs of each class.
@@ -97,7 +98,7 @@ fn test(device: &Device) -> Result<SelfTest, Error> {
     let mut counts = [[0; RESULTS]; CLASSES.len()];
     let mut first = None;
     for (index, ([a, b], found)) in pairs.iter().zip(results.chunks_exact(RESULTS)).enumerate() {
-        for (operation, (expected, found)) in reference(*a, *b).into_iter().zip(found).enumerate() {
+        for (operation, (expected, found)) in self_test_f64(*a, *b).into_iter().zip(found).enumerate() {
             // Which NaN comes out is nobody's business.
             if expected.to_bits() != found.to_bits() && !(expected.is_nan() && found.is_nan()) {
                 counts[index / PAIRS][operation] += 1;
@@ -112,22 +113,6 @@ fn test(device: &Device) -> Result<SelfTest, Error> {
         different.extend(wrong.map(|(operation, count)| (operation, class, count)));
     }
     Ok(SelfTest::Inexact { compared, different, first })
-}
-
-/// The kernel's nine results, by the CPU.
-fn reference(a: f64, b: f64) -> [f64; RESULTS] {
-    let split = |x: f64| {
-        let c = 134_217_729.0 * x;
-        let high = c - (c - x);
-        (high, x - high)
-    };
-    let (sum, product) = (a + b, a * b);
-    let virtual_b = sum - a;
-    let sum_error = (a - (sum - virtual_b)) + (b - virtual_b);
-    let ((ah, al), (bh, bl)) = (split(a), split(b));
-    let product_error = al * bl - (((product - ah * bh) - al * bh) - ah * bl);
-    let comparison = f64::from(u8::from(a < b) + 2 * u8::from(a == b) + 4 * u8::from(a > b));
-    [sum, a - b, product, a / b, sum_error, product_error, ah, al, comparison]
 }
 
 /// A small generator: SplitMix64.

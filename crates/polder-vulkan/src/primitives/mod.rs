@@ -8,7 +8,6 @@
 mod compact;
 mod copy;
 mod reduce;
-pub mod reference;
 mod scan;
 mod sort;
 

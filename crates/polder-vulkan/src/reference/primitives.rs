@@ -1,4 +1,4 @@
-//! The primitives as plain Rust on slices: what the kernels must give, bit for bit.
+//! The primitives as a whole.
 
 /// The sum of all words before each, and of all; sums wrap around.
 pub fn exclusive_scan(words: &[u32]) -> (Vec<u32>, u32) {
