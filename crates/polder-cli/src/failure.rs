@@ -39,10 +39,13 @@ impl Failure {
                 let number = |i: u32| i as u64 + first as u64;
                 let pairs: Vec<[u64; 2]> = pairs.into_iter().map(|pair| pair.map(number)).collect();
                 let more = if truncated { "at least " } else { "" };
-                let plural = if pairs.len() == 1 { "pair of segments crosses" } else { "pairs of segments cross" };
                 let listed: Vec<_> = pairs.iter().take(NAMED).map(|[a, b]| format!("{a} and {b}")).collect();
                 let rest = if pairs.len() > NAMED { ", ..." } else { "" };
-                let message = format!("{more}{} {plural}: {}{rest}", pairs.len(), listed.join(", "));
+                let message = match pairs.len() {
+                    0 => "segments cross".into(),
+                    1 => format!("{more}1 pair of segments crosses: {}", listed[0]),
+                    n => format!("{more}{n} pairs of segments cross: {}{rest}", listed.join(", ")),
+                };
                 Self::new(kind, message).with("pairs", json!(pairs)).with("truncated", truncated).with("first", first)
             }
             polder::Error::Cancelled(_) => Self::new(kind, "cancelled"),
