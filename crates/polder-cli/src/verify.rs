@@ -35,7 +35,7 @@ pub(crate) fn verify(job: &Job, args: &VerifyArgs) -> Result<ExitCode, Failure> 
     job.done();
     match args.report {
         Some(_) => crate::print(&crate::json(&verdict)?)?,
-        None => crate::print(&told(&verdict, input.first, mesh.first, &args.mesh))?,
+        None => crate::print(&told(&verdict, input.first, mesh.first, args))?,
     }
     let right = if args.canonical { verdict.is_canonical() } else { verdict.is_valid() };
     Ok(if right { ExitCode::SUCCESS } else { ExitCode::from(WRONG) })
@@ -60,15 +60,22 @@ pub(crate) fn named_mesh(
     Ok(Ok(mesh))
 }
 
-/// The verdict in the numbers of the files.
-fn told(verdict: &Verdict, first_point: u32, first_triangle: u32, mesh: &Path) -> String {
+/// The verdict in the numbers of the files. What only speaks against being canonical is listed if that was demanded,
+/// else counted, and left out where worse is to be said.
+fn told(verdict: &Verdict, first_point: u32, first_triangle: u32, args: &VerifyArgs) -> String {
     let word = match (verdict.is_valid(), verdict.is_canonical()) {
         (_, true) => "valid and canonical",
         (true, false) => "valid, but not canonical",
         (false, _) => "not valid",
     };
-    let mut lines = vec![format!("{}: {word}", mesh.display())];
+    let mut lines = vec![format!("{}: {word}", args.mesh.display())];
     for &(kind, total) in verdict.totals() {
+        if kind.is_harmless() && !args.canonical {
+            if verdict.is_valid() {
+                lines.push(format!("  {total} x: {}", kind.text()));
+            }
+            continue;
+        }
         let listed: Vec<_> = verdict.problems().iter().filter(|problem| problem.kind == kind).collect();
         for problem in &listed {
             let place = renumbered(problem.place, first_point, first_triangle);

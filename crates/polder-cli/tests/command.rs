@@ -160,8 +160,10 @@ fn wrong_meshes_are_told_where_they_are_wrong() {
     let mut swapped = triangles.clone();
     swapped.swap(0, 1);
     write(&swapped);
-    assert_eq!(polder(dir, "verify in.poly wrong.ele").code, 0);
-    assert_eq!(polder(dir, "verify in.poly wrong.ele --canonical").code, 1);
+    let run = ok(dir, "verify in.poly wrong.ele");
+    assert_eq!(run.text(), "wrong.ele: valid, but not canonical\n  1 x: it should come before the one before it\n");
+    let run = polder(dir, "verify in.poly wrong.ele --canonical");
+    assert!(run.code == 1 && run.text().contains("triangle 2: it should come before"), "{}", run.text());
 
     fs::write(dir.join("other.obj"), "v 0 0\nv 1 0\nv 5 5\nf 1 2 3\n").unwrap();
     let run = polder(dir, "verify in.poly other.obj");
