@@ -52,9 +52,10 @@ fn orders_and_rounds_side_by_side() {
     }
 }
 
+/// Constraints side by side into one vertex: the triangles that they cross grow faster in number than they do.
 #[test]
 #[ignore = "long: cargo xtask ci --long"]
-fn fan_steps() {
+fn the_steps_of_a_fan() {
     for k in [10_000, 40_000] {
         let start = Start::stage_4(&polder_io::generate::fan(k, 1));
         let Start { mut mesh, positions, constraints, .. } = start;

@@ -162,6 +162,26 @@ fn two_thousand_that_all_cross() {
     assert!(some.pairs.iter().all(|&[i, j]| i < j && j <= 1414));
 }
 
+/// Where four hundred constraints do not cross and then each of four hundred more crosses them all, the first pairs are
+/// found without a search of them all.
+#[test]
+fn the_first_pairs_of_too_many() {
+    let n = 400u32;
+    let at = |i: u32| f64::from(i) + 1.0;
+    let mut positions = Vec::new();
+    positions.extend((0..n).flat_map(|i| [DVec2::new(0.0, at(i)), DVec2::new(2000.0, at(i) + 0.5)]));
+    positions.extend((0..n).flat_map(|i| [DVec2::new(at(i), 0.0), DVec2::new(at(i) + 0.25, 2000.0)]));
+    let constraints: Vec<[u32; 2]> = (0..2 * n).map(|i| [2 * i, 2 * i + 1]).collect();
+    let (mesh, _) = sweep(&positions).unwrap();
+    let walk = reference::walk(&mesh, &positions, &constraints).unwrap();
+    for max in [0, 1, 100, 2500] {
+        let some = reference::crossings(&mesh, &positions, &walk, max).unwrap();
+        let mut first: Vec<[u32; 2]> = (0..max as u32).map(|p| [p % n, n + p / n]).collect();
+        first.sort_unstable();
+        assert_eq!(some, Crossings { pairs: first, truncated: true });
+    }
+}
+
 /// Many parallel constraints through the same few triangles: no crossing, and no time for all pairs.
 #[test]
 fn parallel_ones_through_one_triangle() {

@@ -10,7 +10,7 @@
 //! across, or as the crossing of an edge. Two segments cross at one point at most, so that no pair is found twice.
 //!
 //! Where there are more crossings than asked for, the first ones in the order of (higher constraint, lower constraint)
-//! are kept: growing prefixes of the constraints are searched until one has enough.
+//! are kept: prefixes of the constraints are searched until one has enough, and not too many.
 
 use super::chords::{Chord, Place, Room};
 use super::fan::{enter, leave};
@@ -53,15 +53,7 @@ fn crossings_in_chunks(
     let enough = max_crossings.saturating_mul(PATIENCE).saturating_add(1);
     let mut pairs = match search.prefix(constraints, enough)? {
         Found::All(pairs) => pairs,
-        Found::TooMany => {
-            let mut prefix = 1024.min(constraints);
-            loop {
-                match search.prefix(prefix, usize::MAX)? {
-                    Found::All(pairs) if pairs.len() > max_crossings || prefix == constraints => break pairs,
-                    _ => prefix = prefix.saturating_mul(2).min(constraints),
-                }
-            }
-        }
+        Found::TooMany => search.shortest(constraints, max_crossings, enough)?,
     };
     let truncated = pairs.len() > max_crossings;
     if truncated {
@@ -123,6 +115,25 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
+    /// All crossings of a prefix that has more than `max`, but, if that is possible, no more than `enough`; the whole
+    /// has more than that. Prefixes double in length until one has too many, then the space between is halved.
+    fn shortest(&self, whole: u32, max: usize, enough: usize) -> Result<Vec<[u32; 2]>, ConstrainError> {
+        let (mut few, mut many) = (0, whole);
+        while many - few > 1 {
+            let middle = (2 * few).max(1024).min(few + (many - few) / 2);
+            match self.prefix(middle, enough)? {
+                Found::All(pairs) if pairs.len() > max => return Ok(pairs),
+                Found::All(_) => few = middle,
+                Found::TooMany => many = middle,
+            }
+        }
+        // The last constraint alone brings the rest, and it crosses each other one once at most.
+        match self.prefix(many, usize::MAX)? {
+            Found::All(pairs) => Ok(pairs),
+            Found::TooMany => Ok(Vec::new()),
+        }
+    }
+
     /// All crossings among the first `prefix` constraints, unless they are `limit` or more.
     fn prefix(&self, prefix: u32, limit: usize) -> Result<Found, ConstrainError> {
         let triangles = self.mesh.slots();
