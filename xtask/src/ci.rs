@@ -1,10 +1,13 @@
 //! `cargo xtask ci`: everything that has to pass.
 
 use crate::steps::{cargo, execute, step};
-use crate::tidy;
+use crate::{lavapipe, shaders, tidy};
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Instant;
+
+/// The feature of the tests that need a Vulkan device.
+const GPU: &str = "polder-tests/gpu-tests";
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -27,8 +30,12 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<(), String> {
         execute(cargo(root, &["fmt", "--all", "--check"])).map_err(|why| format!("{why}; `cargo fmt --all` mends it"))
     })?;
     step("tidy", || tidy::run(root))?;
+    step("shaders", || shaders::check(root))?;
     step("clippy", || {
-        execute(cargo(root, &["clippy", "--workspace", "--all-targets", "--quiet", "--", "--deny", "warnings"]))
+        execute(cargo(
+            root,
+            &["clippy", "--workspace", "--all-targets", "--features", GPU, "--quiet", "--", "--deny", "warnings"],
+        ))
     })?;
     step("documentation", || {
         let mut command = cargo(root, &["doc", "--workspace", "--no-deps", "--quiet"]);
@@ -36,6 +43,11 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<(), String> {
         execute(command)
     })?;
     step("tests", || execute(tests(root, &["--workspace"])))?;
+    step("tests on a Vulkan device", || {
+        let mut command = tests(root, &["--package", "polder-tests", "--features", GPU, "--test", "vulkan_*"]);
+        command.envs(lavapipe::prepare(root)?);
+        execute(command)
+    })?;
     if arguments.long {
         let ignored = ["--workspace", "--lib", "--bins", "--tests", "--", "--ignored"];
         step("long tests", || execute(tests(root, &ignored)))?;

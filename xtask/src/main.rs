@@ -1,8 +1,10 @@
-//! The chores of the workspace: `cargo xtask ci`, `cargo xtask tidy`, `cargo xtask bench`.
+//! The chores of the workspace: `cargo xtask ci`, `cargo xtask tidy`, `cargo xtask bench`,
+//! `cargo xtask shaders`, `cargo xtask lavapipe`.
 #![forbid(unsafe_code)]
 
 mod bench;
 mod ci;
+mod lavapipe;
 mod shaders;
 mod steps;
 mod tidy;
@@ -26,6 +28,8 @@ enum Chore {
     Tidy,
     /// Compiles the shaders and generates the typed arguments of every kernel.
     Shaders(shaders::Arguments),
+    /// Prepares lavapipe and prints what to export: `eval "$(cargo xtask lavapipe)"`, then the Vulkan tests run by hand.
+    Lavapipe,
     /// Builds the benchmarks optimized and runs them.
     Bench(bench::Arguments),
 }
@@ -36,6 +40,7 @@ fn main() -> ExitCode {
         Chore::Ci(arguments) => ci::run(root, &arguments),
         Chore::Tidy => tidy::run(root),
         Chore::Shaders(arguments) => shaders::run(root, &arguments),
+        Chore::Lavapipe => lavapipe::print(root),
         Chore::Bench(arguments) => bench::run(root, &arguments),
     };
     match done {

@@ -48,6 +48,11 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<(), String> {
     again_with_compiler(root, arguments)
 }
 
+/// What is committed against its sources, and against the compiler where one is at hand.
+pub(crate) fn check(root: &Path) -> Result<(), String> {
+    run(root, &Arguments { check: true, no_compiler: false, compiler: false })
+}
+
 /// Runs this chore once more, built with shaderc.
 fn again_with_compiler(root: &Path, arguments: &Arguments) -> Result<(), String> {
     let found = prepare::prepare(root)?;

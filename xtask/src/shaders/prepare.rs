@@ -42,7 +42,11 @@ fn folder(root: &Path) -> PathBuf {
 
 /// Whether a compiler can be had without asking anybody for it.
 pub(super) fn at_hand(root: &Path) -> bool {
-    prepared(root).is_some() || std::env::var_os("SHADERC_LIB_DIR").is_some() || debian_parts(Path::new("/")).is_some()
+    let mut linker = Command::new("c++");
+    linker.arg("--version").stdout(Stdio::null()).stderr(Stdio::null());
+    let links = linker.status().is_ok_and(|status| status.success());
+    let known = std::env::var_os("SHADERC_LIB_DIR").is_some();
+    links && (known || prepared(root).is_some() || debian_parts(Path::new("/")).is_some())
 }
 
 fn prepared(root: &Path) -> Option<Found> {
