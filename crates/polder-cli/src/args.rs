@@ -4,7 +4,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use polder_io::{InputFormat, MeshFormat};
 use std::path::PathBuf;
 
-const MAX_GRID: i64 = polder_voronoi::MAX_SIDE as i64;
+const MAX_GRID: i64 = polder::voronoi::MAX_SIDE as i64;
 
 const AFTER: &str = "\
 Exit codes: 0 all went well; 1 the input is at fault, or the mesh is wrong; 2 the command line is at fault; 3 files, \

@@ -46,6 +46,8 @@ pub use polder_mesh::{
 };
 pub use report::{ConstraintReport, Output, PointReport, Report, StageReport};
 pub use stages::{Stages, stages};
+/// The crates of the stages, whose types [`Stages`] holds.
+pub use {polder_constrain as constrain, polder_dualize as dualize, polder_flip as flip, polder_voronoi as voronoi};
 
 /// Triangulates the whole convex hull of a PSLG's points, with every constraint as edges.
 ///

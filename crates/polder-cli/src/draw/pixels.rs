@@ -3,9 +3,9 @@
 use super::{MARGIN, SIDE, meshes};
 use glam::DVec2;
 use polder::Stages;
+use polder::voronoi::{Diagram, UNCOLORED};
 use polder_io::svg::{Frame, Picture, Widths, colors};
 use polder_mesh::Pslg;
-use polder_voronoi::{Diagram, UNCOLORED};
 
 /// The middle of a pixel.
 fn middle(pixel: [u16; 2]) -> DVec2 {
