@@ -19,6 +19,8 @@ use std::process::Command;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
+    /// The stages to look at, `voronoi` for polder-voronoi; all of them if none is named.
+    stages: Vec<String>,
     /// Writes nothing; fails where the committed files are not what the sources give.
     #[arg(long)]
     check: bool,
@@ -43,14 +45,23 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<(), String> {
     }
     if arguments.check && (arguments.no_compiler || (!arguments.compiler && !prepare::at_hand(root))) {
         println!("shaders: no shader compiler at hand: sources and reflection are compared, bytes are not");
-        return stages(root)?.iter().try_for_each(|stage| check_without_compiler(root, stage));
+        return wanted(root, arguments)?.iter().try_for_each(|stage| check_without_compiler(root, stage));
     }
     again_with_compiler(root, arguments)
 }
 
+fn wanted(root: &Path, arguments: &Arguments) -> Result<Vec<Stage>, String> {
+    let mut all = stages(root)?;
+    if let Some(unknown) = arguments.stages.iter().find(|name| all.iter().all(|stage| stage.name != **name)) {
+        return Err(format!("no kernels in shaders-glsl/{unknown}"));
+    }
+    all.retain(|stage| arguments.stages.is_empty() || arguments.stages.contains(&stage.name));
+    Ok(all)
+}
+
 /// What is committed against its sources, and against the compiler where one is at hand.
 pub(crate) fn check(root: &Path) -> Result<(), String> {
-    run(root, &Arguments { check: true, no_compiler: false, compiler: false })
+    run(root, &Arguments { stages: Vec::new(), check: true, no_compiler: false, compiler: false })
 }
 
 /// Runs this chore once more, built with shaderc.
@@ -67,6 +78,7 @@ fn again_with_compiler(root: &Path, arguments: &Arguments) -> Result<(), String>
         "--",
         "shaders",
     ]);
+    command.args(&arguments.stages);
     if arguments.check {
         command.args(["--check", "--compiler"]);
     }
@@ -79,7 +91,7 @@ fn again_with_compiler(root: &Path, arguments: &Arguments) -> Result<(), String>
 #[cfg(feature = "shaders")]
 fn with_compiler(root: &Path, arguments: &Arguments) -> Result<(), String> {
     let compiler = compiler().ok_or("built without shaderc")?;
-    for stage in stages(root)? {
+    for stage in wanted(root, arguments)? {
         if arguments.check {
             check_without_compiler(root, &stage)?;
             check_bytes(root, &stage, &compiler)?;
