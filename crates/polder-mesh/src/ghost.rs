@@ -2,7 +2,7 @@
 
 use crate::MeshError;
 
-/// The ghost vertex: the vertex at infinity, which closes the hull ([CET]'s dummy seed `x₀`).
+/// The ghost vertex: the vertex at infinity, which closes the hull (\[CET\]'s dummy seed `x₀`).
 pub const GHOST: u32 = u32::MAX;
 /// All three corners of a slot that holds no triangle.
 pub const DELETED: u32 = u32::MAX - 1;

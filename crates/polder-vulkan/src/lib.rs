@@ -14,7 +14,7 @@
 //!   on the device, and touches no queue.
 //! - [`Engine`]: runs recordings. It puts the narrowest barriers between commands that conflict, submits, waits by a
 //!   timeline semaphore, and turns loss, time-out and lack of memory into an [`Error`].
-//! - [`primitives`]: scan, compaction, reduction, sort. [`reference`] is the same in plain Rust, bit for bit.
+//! - [`primitives`]: scan, compaction, reduction, sort. [`mod@reference`] is the same in plain Rust, bit for bit.
 //!
 //! # Addresses, not bindings
 //!
@@ -33,6 +33,10 @@
 //!   device opened anew works.
 
 #![allow(unsafe_code, reason = "the one crate that calls Vulkan")]
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
 
 mod buffer;
 mod cache;
