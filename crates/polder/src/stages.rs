@@ -120,7 +120,12 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
         return Err(crossing(crossings));
     }
     let mut constrained = inserted.mesh.clone();
-    let insertion = constrain::insert(&mut constrained, &positions, &walk.sub_constraints)?;
+    let mut inserting = constrain::Insertion::new(&mut constrained, &positions, &walk.sub_constraints)?;
+    while !inserting.is_done() {
+        monitor.step("constrain", 4, STAGES)?;
+        inserting.outer_round()?;
+    }
+    let insertion = inserting.report();
     watch.stage(
         "constrain",
         [
