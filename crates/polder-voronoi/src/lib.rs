@@ -7,7 +7,7 @@
 //! | | a [`Diagram`]: the color (site number) of every pixel, as flooding from the sites gives it |
 //!
 //! [`reference::diagram`] runs the whole stage; its steps stand beside it for use one by one: [`reference::map`],
-//! [`reference::color`], [`reference::debris`], [`reference::recolor`].
+//! [`reference::color`], [`reference::debris`], [`reference::recolor`]. [`gpu::Stage`] does the same on a Vulkan device.
 //!
 //! # Guarantees
 //!
@@ -24,6 +24,8 @@
 
 mod diagram;
 mod error;
+pub mod gpu;
+pub mod kernels;
 mod mapping;
 mod order;
 pub mod reference;

@@ -62,7 +62,7 @@ pub fn debris(diagram: &mut Diagram, sites: &Sites) -> Result<u64, VoronoiError>
 }
 
 /// Whether a colored pixel is its site's own or has a neighbor of its color that is closer to the site.
-fn has_closer(diagram: &Diagram, sites: &Sites, index: usize) -> bool {
+pub(super) fn has_closer(diagram: &Diagram, sites: &Sites, index: usize) -> bool {
     let color = diagram.colors[index];
     let pixel = diagram.pixel(index);
     let site = sites.pixels[color as usize];

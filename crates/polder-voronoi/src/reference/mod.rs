@@ -5,6 +5,7 @@
 mod color;
 mod debris;
 pub mod flooding;
+pub mod kernels;
 mod map;
 mod recolor;
 

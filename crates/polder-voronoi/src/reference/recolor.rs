@@ -65,7 +65,7 @@ pub fn recolor(diagram: &mut Diagram, sites: &Sites) -> Result<u64, VoronoiError
 }
 
 /// The best color on offer to a debris pixel, or [`UNCOLORED`] where there is none.
-fn best_candidate(diagram: &Diagram, sites: &Sites, index: usize) -> u32 {
+pub(super) fn best_candidate(diagram: &Diagram, sites: &Sites, index: usize) -> u32 {
     let pixel = diagram.pixel(index);
     let offers = neighbors(diagram, pixel).filter_map(|neighbor| {
         let color = diagram.color(neighbor);

@@ -1,0 +1,30 @@
+// Coloring, 2 of 6: the first and the last row with a site, in each column of each band of rows; a half word each.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "grid.glsl"
+
+layout(push_constant, std430) uniform Args {
+    ReadU32 grid;
+    WriteU32 ends;
+    uint width;
+    uint height;
+    uint band; // rows
+};
+
+void main() {
+    uint item = item_index();
+    uint x = item % width;
+    uint from = item / width * band;
+    if (from >= height) {
+        return;
+    }
+    uint first = 0xffffu;
+    uint last = 0xffffu;
+    for (uint y = from; y < min(from + band, height); y++) {
+        if (grid.at[y * width + x] != NONE) {
+            first = first == 0xffffu ? y : first;
+            last = y;
+        }
+    }
+    ends.at[item] = last << 16 | first;
+}

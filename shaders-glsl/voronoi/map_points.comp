@@ -1,0 +1,58 @@
+// Mapping, 1 of 5: the pixel of each point, in integers alone from the bits of its coordinates; the lowest index keeps it.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "grid.glsl"
+
+layout(push_constant, std430) uniform Args {
+    ReadU64 points;
+    WriteU32 pixels;
+    U32 owner;
+    int64_t translation_x;
+    int64_t translation_y;
+    int exponent;
+    uint side;
+    uint width;
+    uint height;
+    uint count;
+};
+
+// floor(x / 2^exponent), saturated at 62 bits.
+int64_t floor_units(uint64_t bits) {
+    uint high = uint(bits >> 32);
+    uint biased = high >> 20 & 0x7ffu;
+    int64_t magnitude = int64_t(bits & 0xfffffffffffffUL);
+    magnitude |= biased == 0u ? int64_t(0) : int64_t(1) << 52;
+    int64_t significand = high >> 31 != 0u ? -magnitude : magnitude;
+    int shift = int(max(biased, 1u)) - 1075 - exponent;
+    if (shift < 0) {
+        return significand >> min(-shift, 63);
+    }
+    if (shift <= 9) {
+        return significand << shift;
+    }
+    return significand == 0 ? int64_t(0) : (significand < 0 ? -(int64_t(1) << 62) : int64_t(1) << 62);
+}
+
+uint column_or_row(uint64_t bits, int64_t translation, uint pixels_along) {
+    int64_t from_start = floor_units(bits) - translation;
+    if (from_start < 0) {
+        return 0u;
+    }
+    uint64_t units = uint64_t(from_start);
+    // Beyond the grid, and everything that a division of 64 bits would be needed for.
+    if (units >= uint64_t(side) * pixels_along) {
+        return pixels_along - 1u;
+    }
+    return uint(units / side);
+}
+
+void main() {
+    uint point = item_index();
+    if (point >= count) {
+        return;
+    }
+    uint x = column_or_row(points.at[2u * point], translation_x, width);
+    uint y = column_or_row(points.at[2u * point + 1u], translation_y, height);
+    pixels.at[point] = y << 16 | x;
+    atomicMin(owner.at[y * width + x], point);
+}
