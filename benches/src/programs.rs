@@ -89,9 +89,9 @@ impl Prepared<'_> {
             Self::Polder(pslg, options) => {
                 Made::Polder(polder::triangulate(pslg, &options).map_err(|error| error.to_string())?.triangulation)
             }
-            // The stable way keeps the numbering, as the others do.
+            // Its fastest way, which renumbers the points; the one that keeps the numbering takes about twice as long.
             Self::Spade(points, constraints) if constraints.is_empty() => {
-                Made::Spade(DelaunayTriangulation::bulk_load_stable(points).map_err(|error| error.to_string())?)
+                Made::Spade(DelaunayTriangulation::bulk_load(points).map_err(|error| error.to_string())?)
             }
             Self::Spade(points, constraints) => Made::SpadeConstrained(
                 ConstrainedDelaunayTriangulation::bulk_load_cdt(points, constraints)
