@@ -76,3 +76,64 @@ fn listed(devices: &[DeviceInfo]) -> String {
     };
     devices.iter().map(line).collect::<Vec<_>>().join("; ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::info::Limits;
+
+    fn device(index: usize, name: &str, kind: DeviceKind, missing: &[&str]) -> DeviceInfo {
+        let limits = Limits {
+            workgroup_invocations: 256,
+            workgroups: [65535; 3],
+            shared_bytes: 32768,
+            argument_bytes: 128,
+            buffer_bytes: 1 << 30,
+            allocation_bytes: 1 << 30,
+            subgroup: 32,
+        };
+        DeviceInfo {
+            index,
+            name: name.to_owned(),
+            kind,
+            api_version: (1, 3, 0),
+            driver: String::new(),
+            memory_bytes: 1 << 30,
+            limits,
+            features: Vec::new(),
+            missing: missing.iter().map(|text| (*text).to_owned()).collect(),
+            physical: ash::vk::PhysicalDevice::default(),
+            family: Some(0),
+            timestamp_period: 1.0,
+            timestamps: true,
+            portability_subset: false,
+            memory_budget: false,
+            cache_name: String::new(),
+        }
+    }
+
+    #[test]
+    fn the_best_is_discrete_and_usable_and_no_cpu() {
+        let cpu = device(0, "llvmpipe", DeviceKind::Cpu, &[]);
+        let old = device(1, "Old Card", DeviceKind::Discrete, &["synchronization2", "timelineSemaphore"]);
+        let small = device(2, "Graphics 620", DeviceKind::Integrated, &[]);
+        let big = device(3, "New Card", DeviceKind::Discrete, &[]);
+        let picked = |selection: Selection, devices: &[DeviceInfo]| selection.pick(devices).map(|info| info.index);
+        let all = [cpu, old, small, big];
+        assert_eq!(picked(Selection::Best, &all), Ok(3));
+        assert_eq!(picked(Selection::Best, &all[..3]), Ok(2));
+        assert!(matches!(picked(Selection::Best, &all[..2]), Err(Error::NoDevice { .. })));
+        assert!(matches!(picked(Selection::Best, &[]), Err(Error::NoDevice { found, .. }) if found == "none"));
+        // Asked for, a CPU is taken; what lacks something is refused by its name, and no other taken for it.
+        for text in ["0", "LLVM", "cpu", "lavapipe"] {
+            assert_eq!(picked(Selection::parse(text), &all), Ok(0));
+        }
+        match picked(Selection::parse("old card"), &all) {
+            Err(Error::Unsupported { device, missing }) => {
+                assert_eq!((device.as_str(), missing.as_str()), ("Old Card", "synchronization2, timelineSemaphore"));
+            }
+            other => panic!("{other:?}"),
+        }
+        assert!(matches!(picked(Selection::Index(4), &all), Err(Error::NoDevice { .. })));
+    }
+}

@@ -197,3 +197,18 @@ pub(super) fn formatted(text: &str) -> Result<String, String> {
     }
     String::from_utf8(done.stdout).map_err(|error| format!("rustfmt: {error}"))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_and_compilers() {
+        assert_eq!(camel("sort_move_u64"), "SortMoveU64");
+        let text =
+            "name: \"scan\",\n  source_hash: \"0\",\n  compiler: \"shaderc 1\",\nname: \"sort\",\ncompiler: \"x\",\n";
+        let found: Vec<(String, String)> = recorded_compilers(text).into_iter().collect();
+        let pair = |a: &str, b: &str| (a.to_owned(), b.to_owned());
+        assert_eq!(found, [pair("scan", "shaderc 1"), pair("sort", "x")]);
+    }
+}

@@ -153,3 +153,42 @@ pub(super) fn write_if_changed(path: &Path, bytes: &[u8]) -> Result<(), String> 
     }
     std::fs::write(path, bytes).map_err(|error| format!("{}: {error}", path.display()))
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests")]
+    use super::*;
+
+    #[test]
+    fn a_hash_covers_all_that_is_included() {
+        let root = std::env::temp_dir().join(format!("polder-sources-{}", std::process::id()));
+        let write = |path: &str, text: &str| {
+            let path = root.join(path);
+            std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+            std::fs::write(path, text).unwrap();
+        };
+        let hash = || {
+            let stages = stages(&root).unwrap();
+            assert_eq!((stages.len(), stages[0].name.as_str(), stages[0].kernels.len()), (1, "flip", 1));
+            let kernel = &stages[0].kernels[0];
+            assert_eq!((kernel.name.as_str(), kernel.about.as_slice()), ("mark", ["Marks.".to_owned()].as_slice()));
+            kernel.hash.clone()
+        };
+        write("shaders-glsl/include/a.glsl", "#include \"b.glsl\"\n");
+        write("shaders-glsl/include/b.glsl", "#include \"a.glsl\"\n");
+        write("shaders-glsl/include/unused.glsl", "");
+        write("shaders-glsl/flip/mark.comp", "// Marks.\n#version 460\n#include \"a.glsl\"\n");
+        let first = hash();
+        write("shaders-glsl/include/unused.glsl", "int x;");
+        assert_eq!(hash(), first);
+        write("shaders-glsl/include/b.glsl", "#include \"a.glsl\"\nint x;\n");
+        let second = hash();
+        assert_ne!(second, first);
+        // A file beside the kernel hides the shared one.
+        write("shaders-glsl/flip/a.glsl", "");
+        assert!(hash() != second && hash() != first);
+        write("shaders-glsl/flip/mark.comp", "#include \"none.glsl\"\n");
+        assert!(stages(&root).is_err());
+        std::fs::remove_dir_all(&root).unwrap();
+    }
+}
