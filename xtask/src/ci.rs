@@ -44,7 +44,8 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<(), String> {
     })?;
     step("tests", || execute(tests(root, &["--workspace"])))?;
     step("tests on a Vulkan device", || {
-        let mut command = tests(root, &["--package", "polder-tests", "--features", GPU, "--test", "vulkan_*"]);
+        let mut command =
+            tests(root, &["--package", "polder-tests", "--features", GPU, "--test", "vulkan_*", "--test", "*_gpu*"]);
         command.envs(lavapipe::prepare(root)?);
         execute(command)
     })?;
