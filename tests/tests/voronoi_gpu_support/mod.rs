@@ -4,12 +4,28 @@
 use crate::vulkan_support::{Gpu, words};
 use polder_voronoi::gpu::{Bands, Buffers, Stage};
 use polder_voronoi::{Sites, reference};
+use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 pub(crate) struct Shared {
     pub(crate) gpu: Gpu,
     /// With the bands that users get, and with short ones that make many of a small grid.
     pub(crate) stages: [Stage; 2],
+    /// For each stage and size, kept: making them costs more than a test, and what they hold from before must not matter.
+    held: HashMap<(usize, [u32; 2]), Buffers>,
+}
+
+impl Shared {
+    /// Buffers of a stage that hold these sites, as mapping would leave them.
+    pub(crate) fn holding(&mut self, stage: usize, sites: &Sites) -> (&mut Gpu, &Stage, &Buffers) {
+        let Shared { gpu, stages, held } = self;
+        let pixels = (sites.size[0] * sites.size[1]) as usize;
+        let make = || stages[stage].buffers(pixels, sites.size).unwrap();
+        let buffers = held.entry((stage, sites.size)).or_insert_with(make);
+        gpu.engine.upload(buffers.pixels(), &sites.pixels[..sites.count]).unwrap();
+        gpu.engine.upload(buffers.site_count().unwrap(), &[sites.count as u32]).unwrap();
+        (gpu, &stages[stage], buffers)
+    }
 }
 
 static SHARED: Mutex<Option<Shared>> = Mutex::new(None);
@@ -22,18 +38,10 @@ pub(crate) fn with_device(test: impl FnOnce(&mut Shared)) {
     let shared = shared.get_or_insert_with(|| {
         let gpu = Gpu::open();
         let stages = [Stage::new(&gpu.device).unwrap(), Stage::with_bands(&gpu.device, SHORT).unwrap()];
-        Shared { gpu, stages }
+        Shared { gpu, stages, held: HashMap::new() }
     });
     test(shared);
     assert_eq!(shared.gpu.device.validation_messages(), Vec::<String>::new());
-}
-
-/// Buffers that hold these sites, as mapping would leave them.
-pub(crate) fn with_sites(gpu: &mut Gpu, stage: &Stage, sites: &Sites) -> Buffers {
-    let buffers = stage.buffers(sites.order.len(), sites.size).unwrap();
-    gpu.engine.upload(buffers.pixels(), &sites.pixels).unwrap();
-    gpu.engine.upload(buffers.site_count().unwrap(), &[sites.count as u32]).unwrap();
-    buffers
 }
 
 /// Some `count` points on pixels anywhere in a grid.
@@ -50,7 +58,7 @@ pub(crate) fn elected(size: [u32; 2], pixels: &[[u16; 2]]) -> Sites {
 pub(crate) fn grids() -> Vec<(String, Sites)> {
     let mut grids = Vec::new();
     let mut add = |name: &str, sites: Sites| grids.push((format!("{name}, {:?}", sites.size), sites));
-    let sizes = [[1, 1], [1, 2], [2, 1], [3, 3], [1, 257], [257, 1], [63, 65], [64, 64], [65, 63], [130, 7], [7, 130]];
+    let sizes = [[1, 1], [1, 2], [2, 1], [3, 3], [1, 257], [257, 1], [64, 65], [130, 7], [7, 130]];
     for (seed, size) in sizes.into_iter().enumerate() {
         let pixels = (size[0] * size[1]) as usize;
         for count in [1, 2, pixels.div_ceil(50), pixels.div_ceil(7), pixels, 4 * pixels] {
