@@ -44,7 +44,8 @@ impl Delaunay {
     /// # Errors
     ///
     /// [`CpuError::Crossing`] at the first constraint that properly crosses one inserted before; the triangulation then
-    /// holds those inserted so far. [`CpuError::IndexOutOfRange`] before anything is changed. [`CpuError::Cancelled`].
+    /// holds those inserted so far. [`CpuError::IndexOutOfRange`] before anything is changed. [`CpuError::TooLarge`] where the chains together
+    /// would have more than [`Chains::MAX_VERTICES`] vertices. [`CpuError::Cancelled`].
     pub fn constrain(
         &mut self,
         constraints: &[Constraint],
@@ -62,6 +63,7 @@ impl Delaunay {
 
         let mut inserter = Inserter::new(self, !constraints.is_empty());
         let mut long = Vec::new();
+        let mut room = Chains::MAX_VERTICES.saturating_sub(2 * constraints.len());
         for (done, item) in queue.iter().enumerate() {
             if done % STEP == 0 {
                 monitor.step("constrain", done as u64, queue.len() as u64)?;
@@ -73,6 +75,7 @@ impl Delaunay {
             let (from, to) = if turned { (b, a) } else { (a, b) };
             let mut between = inserter.insert(i, from, to)?;
             if !between.is_empty() {
+                room = room.checked_sub(between.len()).ok_or(CpuError::TooLarge { constraint: i })?;
                 if turned {
                     between.reverse();
                 }

@@ -1,4 +1,4 @@
-use polder_mesh::Cancelled;
+use polder_mesh::{Cancelled, Chains};
 use thiserror::Error;
 
 /// Why the CPU backend gave up.
@@ -18,6 +18,15 @@ pub enum CpuError {
         constraint: u32,
         /// The index that it names.
         index: u32,
+    },
+    /// The chains of the constraints, written out in full, have more vertices than can be numbered.
+    #[error(
+        "constraint {constraint}: up to it the chains of vertices along constraints are longer than {} in all",
+        Chains::MAX_VERTICES
+    )]
+    TooLarge {
+        /// The constraint at which the limit was passed.
+        constraint: u32,
     },
     /// A walk or a row of flips ran past its bound: a defect, caught before it could hang.
     #[error("constraint {constraint}: the {what} ran past its bound")]

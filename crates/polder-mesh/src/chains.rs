@@ -16,6 +16,9 @@ impl Default for Chains {
 }
 
 impl Chains {
+    /// The most vertices that all chains together can have.
+    pub const MAX_VERTICES: usize = u32::MAX as usize;
+
     /// No chains, with room for `constraints` of them.
     pub fn with_capacity(constraints: usize) -> Self {
         let mut offsets = Vec::with_capacity(constraints + 1);
@@ -24,9 +27,14 @@ impl Chains {
     }
 
     /// Appends the chain of the next constraint.
+    ///
+    /// # Panics
+    ///
+    /// If all chains together have more than [`MAX_VERTICES`](Self::MAX_VERTICES) vertices; callers count before.
     pub fn push(&mut self, chain: impl IntoIterator<Item = u32>) {
         self.vertices.extend(chain);
-        self.offsets.push(self.vertices.len() as u32);
+        let end = u32::try_from(self.vertices.len()).expect("at most MAX_VERTICES vertices in all chains");
+        self.offsets.push(end);
     }
 
     /// The number of constraints.

@@ -1,5 +1,6 @@
 //! The CPU backend: points, then constraints, then the canonical order.
 
+use crate::error::too_many_chain_vertices;
 use crate::report::Stopwatch;
 use crate::{Backend, Error, Options, Output, Report};
 use polder_cpu::{CpuError, Delaunay};
@@ -66,6 +67,7 @@ fn crossings(pslg: &Pslg, options: &Options) -> Result<Error, Error> {
 fn typed(error: CpuError) -> Error {
     match error {
         CpuError::Cancelled(cancelled) => cancelled.into(),
+        CpuError::TooLarge { .. } => too_many_chain_vertices(),
         other => Error::Internal { stage: "cpu", what: other.to_string() },
     }
 }

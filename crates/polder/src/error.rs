@@ -1,7 +1,7 @@
 use polder_constrain::ConstrainError;
 use polder_dualize::DualizeError;
 use polder_flip::FlipError;
-use polder_mesh::{Cancelled, MeshError};
+use polder_mesh::{Cancelled, Chains, MeshError};
 use polder_voronoi::VoronoiError;
 use thiserror::Error;
 
@@ -70,6 +70,12 @@ impl Error {
     }
 }
 
+/// Constraints through very many vertices: their chains, written out in full, cannot be numbered.
+pub(crate) fn too_many_chain_vertices() -> Error {
+    let (limit, what) = (Chains::MAX_VERTICES, "vertices along all constraints");
+    MeshError::TooLarge { what, count: limit.saturating_add(1), limit }.into()
+}
+
 impl From<VoronoiError> for Error {
     fn from(error: VoronoiError) -> Self {
         match error {
@@ -110,6 +116,7 @@ impl From<ConstrainError> for Error {
                 Self::CrossingConstraints { pairs: crossings.pairs, truncated: crossings.truncated }
             }
             ConstrainError::Flip(error) => error.into(),
+            ConstrainError::TooLarge { .. } => too_many_chain_vertices(),
             ConstrainError::BoundExceeded { rounds, .. } => Self::BoundExceeded { stage: "constrain", bound: rounds },
             other => Self::Internal { stage: "constrain", what: other.to_string() },
         }
