@@ -1,6 +1,8 @@
 //! The kernels that find debris and recolor it.
 
 use super::*;
+use crate::vulkan_support::words;
+use polder_voronoi::UNCOLORED;
 
 /// Device copies of what the kernels of a round share.
 struct Round {
@@ -78,8 +80,9 @@ fn mark_debris() {
 fn drop_debris() {
     with_device(|Shared { gpu, .. }| {
         for (sites, mut diagram) in diagrams() {
-            // In two rounds, as if the pixels had been marked one after the other.
-            let all = kernels::mark_debris(&diagram, &sites);
+            // Any pixels will do; in two rounds, as if they had been marked one after the other.
+            let random = words(7, diagram.colors.len());
+            let all: Vec<u32> = (0..diagram.colors.len() as u32).filter(|&i| random[i as usize] % 5 == 0).collect();
             let (early, late) = all.split_at(all.len() / 3);
             kernels::drop_debris(&mut diagram, early);
             let round = Round::new(gpu, &sites, &diagram, &all, late.len(), &[]);
@@ -107,7 +110,8 @@ fn drop_debris() {
 fn check_debris() {
     with_device(|Shared { gpu, .. }| {
         for (sites, mut diagram) in diagrams() {
-            let early = kernels::mark_debris(&diagram, &sites);
+            let random = words(8, diagram.colors.len());
+            let early: Vec<u32> = (0..diagram.colors.len() as u32).filter(|&i| random[i as usize] % 5 == 0).collect();
             let candidates = kernels::drop_debris(&mut diagram, &early);
             let round = Round::new(gpu, &sites, &diagram, &early, 0, &candidates);
             let arguments = CheckDebrisArgs {
@@ -136,7 +140,7 @@ fn check_debris() {
     });
 }
 
-/// Diagrams without their debris, half way through recoloring.
+/// Diagrams without their debris, half way through recoloring, and others that have any colors where debris is said to be.
 fn uncolored() -> Vec<(Sites, Diagram)> {
     let mut diagrams = diagrams();
     for (turn, (sites, diagram)) in diagrams.iter_mut().enumerate() {
@@ -146,6 +150,21 @@ fn uncolored() -> Vec<(Sites, Diagram)> {
             kernels::take_color(diagram, &found);
         }
     }
+    let disturbed = diagrams.clone().into_iter().map(|(sites, mut diagram)| {
+        let random = words(9, diagram.colors.len());
+        diagram.debris = (0..diagram.colors.len() as u32).filter(|&i| random[i as usize] % 3 == 0).collect();
+        for &index in &diagram.debris {
+            let word = random[index as usize] / 3;
+            match word % 3 {
+                0 => diagram.colors[index as usize] = UNCOLORED,
+                1 => diagram.colors[index as usize] = word / 3 % sites.count as u32,
+                _ => {}
+            }
+        }
+        (sites, diagram)
+    });
+    let disturbed: Vec<_> = disturbed.collect();
+    diagrams.extend(disturbed);
     diagrams
 }
 
