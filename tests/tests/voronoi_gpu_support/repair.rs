@@ -82,7 +82,8 @@ fn drop_debris() {
         for (sites, mut diagram) in diagrams() {
             // Any pixels will do; in two rounds, as if they had been marked one after the other.
             let random = words(7, diagram.colors.len());
-            let all: Vec<u32> = (0..diagram.colors.len() as u32).filter(|&i| random[i as usize] % 5 == 0).collect();
+            let all: Vec<u32> =
+                (0..diagram.colors.len() as u32).filter(|&i| random[i as usize].is_multiple_of(5)).collect();
             let (early, late) = all.split_at(all.len() / 3);
             kernels::drop_debris(&mut diagram, early);
             let round = Round::new(gpu, &sites, &diagram, &all, late.len(), &[]);
@@ -111,7 +112,8 @@ fn check_debris() {
     with_device(|Shared { gpu, .. }| {
         for (sites, mut diagram) in diagrams() {
             let random = words(8, diagram.colors.len());
-            let early: Vec<u32> = (0..diagram.colors.len() as u32).filter(|&i| random[i as usize] % 5 == 0).collect();
+            let early: Vec<u32> =
+                (0..diagram.colors.len() as u32).filter(|&i| random[i as usize].is_multiple_of(5)).collect();
             let candidates = kernels::drop_debris(&mut diagram, &early);
             let round = Round::new(gpu, &sites, &diagram, &early, 0, &candidates);
             let arguments = CheckDebrisArgs {
@@ -152,7 +154,7 @@ fn uncolored() -> Vec<(Sites, Diagram)> {
     }
     let disturbed = diagrams.clone().into_iter().map(|(sites, mut diagram)| {
         let random = words(9, diagram.colors.len());
-        diagram.debris = (0..diagram.colors.len() as u32).filter(|&i| random[i as usize] % 3 == 0).collect();
+        diagram.debris = (0..diagram.colors.len() as u32).filter(|&i| random[i as usize].is_multiple_of(3)).collect();
         for &index in &diagram.debris {
             let word = random[index as usize] / 3;
             match word % 3 {
