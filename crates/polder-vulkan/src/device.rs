@@ -4,7 +4,7 @@ use crate::cache::{CacheFolder, PipelineCache};
 use crate::error::Called;
 use crate::faults::Faults;
 use crate::info::{DeviceInfo, Feature};
-use crate::instance::Instance;
+use crate::instance::{Instance, one_at_a_time};
 use crate::memory::{Memory, MemoryUse};
 use crate::self_test::SelfTest;
 use crate::{Error, Selection};
@@ -110,9 +110,11 @@ impl Device {
             .enabled_features(&plain)
             .push_next(&mut vulkan12)
             .push_next(&mut vulkan13);
+        let alone = one_at_a_time();
         // SAFETY: the physical device is of this instance; features, extensions and queue were found there.
         let raw =
             unsafe { instance.inner.raw.create_device(info.physical, &description, None) }.called("vkCreateDevice")?;
+        drop(alone);
         // SAFETY: one queue of this family was asked for.
         let queue = unsafe { raw.get_device_queue(family, 0) };
         Device::build(instance.clone(), info, raw, queue, family, None, options.memory_cap, &options.cache, true)
@@ -254,6 +256,7 @@ impl DeviceInner {
 
 impl Drop for DeviceInner {
     fn drop(&mut self) {
+        let _alone = one_at_a_time();
         self.cache.save(&self.raw);
         self.cache.destroy(&self.raw);
         if self.owned {

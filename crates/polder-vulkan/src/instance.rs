@@ -5,7 +5,7 @@ use crate::error::Called;
 use crate::info::DeviceInfo;
 use ash::{ext, vk};
 use std::ffi::{CStr, c_void};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// What the validation layer has said, oldest first.
 type Messages = Mutex<Vec<String>>;
@@ -17,6 +17,13 @@ pub(crate) struct InstanceInner {
     owned: bool,
     /// The loaded library; it must outlive all that was loaded from it.
     _entry: Option<ash::Entry>,
+}
+
+/// Held while instances and devices are made, listed and destroyed. The specification lets threads do that side by side;
+/// an NVIDIA driver (580) now and then never came back from it.
+pub(crate) fn one_at_a_time() -> MutexGuard<'static, ()> {
+    static LOCK: Mutex<()> = Mutex::new(());
+    LOCK.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Vulkan on this machine, loaded at run time.
@@ -31,6 +38,7 @@ impl Instance {
     /// Loads Vulkan. With `validation` the Khronos layer watches every call, and [`Instance::messages`] tells what it
     /// said.
     pub fn load(validation: bool) -> Result<Self, Error> {
+        let alone = one_at_a_time();
         // SAFETY: the library found is the system's Vulkan loader; loading it runs its initializers, which any Vulkan
         // program trusts.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| Error::NoVulkan(error.to_string()))?;
@@ -72,6 +80,7 @@ impl Instance {
             vk::Result::ERROR_INCOMPATIBLE_DRIVER => Error::NoVulkan("no driver is installed".to_owned()),
             result => Error::Vulkan { call: "vkCreateInstance", result },
         })?;
+        drop(alone);
         let mut inner = InstanceInner { raw, messenger: None, messages, owned: true, _entry: None };
         if validation {
             let loaded = ext::debug_utils::Instance::new(&entry, &inner.raw);
@@ -92,6 +101,7 @@ impl Instance {
 
     /// Every device, in the driver's order, usable or not.
     pub fn devices(&self) -> Result<Vec<DeviceInfo>, Error> {
+        let _alone = one_at_a_time();
         // SAFETY: the instance is alive.
         let found = unsafe { self.inner.raw.enumerate_physical_devices() }.called("vkEnumeratePhysicalDevices")?;
         Ok(found
@@ -115,6 +125,7 @@ impl std::fmt::Debug for Instance {
 
 impl Drop for InstanceInner {
     fn drop(&mut self) {
+        let _alone = one_at_a_time();
         if let Some((loaded, messenger)) = self.messenger.take() {
             // SAFETY: made from this instance, and destroyed only here.
             unsafe { loaded.destroy_debug_utils_messenger(messenger, None) };
