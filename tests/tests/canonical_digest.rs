@@ -12,21 +12,12 @@ fn with(pslg: &Pslg, backend: Backend, threads: usize, name: &str) -> Triangulat
     triangulate(pslg, &options).unwrap_or_else(|error| panic!("{name}: {error}")).triangulation
 }
 
-/// The families at a size, the two that take long by their nature at a tenth of it: numbers of every magnitude, and
-/// thousands of constraints along one line.
-fn sized(n: usize, seed: u64) -> Vec<(&'static str, Pslg)> {
-    let slow = ["mixed magnitudes", "collinear with constraints"];
-    let large = families(n, seed).into_iter().filter(|(name, _)| n < 5000 || !slow.contains(name));
-    let small = families(n.min(20_000) / 10, seed).into_iter().filter(|(name, _)| n >= 5000 && slow.contains(name));
-    large.chain(small).collect()
-}
-
 const SIZES: [usize; 5] = [3, 5, 17, 100, 1000];
 
 #[test]
 fn threads_do_not_matter() {
     for n in [17, 20_000] {
-        for (name, pslg) in sized(n, 1) {
+        for (name, pslg) in families(n, 1) {
             let one = with(&pslg, Backend::Cpu, 1, name);
             for threads in [2, 5] {
                 let more = with(&pslg, Backend::Cpu, threads, name);
@@ -55,7 +46,7 @@ fn the_order_of_points_and_constraints_does_not_matter() {
 
 #[test]
 fn the_order_of_a_large_input_does_not_matter() {
-    for (name, pslg) in sized(20_000, 3) {
+    for (name, pslg) in families(20_000, 3) {
         let other = shuffled(&pslg, 4);
         let back = other.digest_back(&with(&other.pslg, Backend::Cpu, 0, name));
         assert_eq!(back, with(&pslg, Backend::Cpu, 0, name).digest(), "{name}");
@@ -87,12 +78,18 @@ fn the_backend_does_not_matter_with_constraints() {
 }
 
 #[test]
+fn the_backend_does_not_matter_at_twenty_thousand_points() {
+    for (name, pslg) in families(20_000, 8) {
+        same_on_both(name, &pslg);
+    }
+}
+
+#[test]
 #[ignore = "long: cargo xtask ci --long"]
 fn the_backend_does_not_matter_for_large_inputs() {
     // What the reference takes very long for at that size: a fan needs a round for every few of its constraints, a strip
     // longer than the grid can be needs long rows of flips.
-    let larger = sized(200_000, 9).into_iter().filter(|(name, _)| !["fan", "strip"].contains(name));
-    for (name, pslg) in sized(20_000, 8).into_iter().chain(larger) {
+    for (name, pslg) in families(200_000, 9).into_iter().filter(|(name, _)| !["fan", "strip"].contains(name)) {
         same_on_both(name, &pslg);
     }
 }
