@@ -7,15 +7,21 @@
 The file holds polylines cut at the borders of bins of one degree, each point as two 16-bit fractions of its bin.
 Coordinates of the output are whole 65535ths of a degree, so that points on a border between bins meet exactly.
 Points that are equal are written once; constraints keep their number, less those that have no length.
+
+The coastlines cross themselves here and there. To leave out the second segment of each pair that crosses:
+
+    polder triangulate coastlines.pslg -o coastlines.tri --error-format json 2> crossings.json
+    python3 benches/coastlines.py gshhg/usr/share/gmt-gshhg/binned_GSHHS_f.nc coastlines.pslg crossings.json
 """
 
+import json
 import sys
 
 import netCDF4
 import numpy as np
 
 
-def main(source: str, target: str) -> None:
+def main(source: str, target: str, crossings: str | None = None) -> None:
     data = netCDF4.Dataset(source)
     data.set_auto_mask(False)
 
@@ -54,6 +60,12 @@ def main(source: str, target: str) -> None:
     same = segment_of_point[1:] == segment_of_point[:-1]
     constraints = np.stack([ids[:-1], ids[1:]], axis=1)[same]
     constraints = constraints[constraints[:, 0] != constraints[:, 1]].astype("<u4")
+    if crossings is not None:
+        with open(crossings) as lines:
+            error = json.loads(lines.readlines()[-1])
+        # Pairs count segments from the first number that the file's format has, 0 for .pslg.
+        second = np.array([pair[1] for pair in error["pairs"]]) - error["first"]
+        constraints = np.delete(constraints, second, axis=0)
     with open(target, "wb") as out:
         out.write(np.array([len(points), len(constraints)], "<u8").tobytes())
         out.write(points.tobytes())

@@ -202,34 +202,35 @@ fn rise(points: &[DVec2], slab: &mut Slab<'_>, mut seam: u32) -> u32 {
     let at = |v: u32| points[v as usize];
     let [mut l, mut r, ..] = slab.tri(seam).v;
     let (mut pl, mut pr) = (at(l), at(r));
-    let mut left = candidate_left(points, slab, seam, pl, pr);
-    let mut right = candidate_right(points, slab, seam, pl, pr);
     loop {
-        let take_left = match (left, right) {
-            (None, None) => return seam,
-            (Some(_), None) => true,
-            (None, Some(_)) => false,
-            (Some((_, a)), Some((_, b))) => incircle_canonical(pl, pr, at(a), at(b)) != Sign::Positive,
-        };
-        if take_left {
-            let Some((ghost, vertex)) = left else { return seam };
-            seam = close_left(slab, seam, ghost, r);
-            (l, pl) = (vertex, at(vertex));
-        } else {
-            let Some((ghost, vertex)) = right else { return seam };
-            seam = close_right(slab, seam, ghost, l);
-            (r, pr) = (vertex, at(vertex));
+        let left = candidate::<true>(points, slab, seam, pl, pr);
+        let right = candidate::<false>(points, slab, seam, pl, pr);
+        let nearer = |a: u32, b: u32| incircle_canonical(pl, pr, at(a), at(b)) != Sign::Positive;
+        match (left, right) {
+            (Some((ghost, a)), right) if right.is_none_or(|(_, b)| nearer(a, b)) => {
+                seam = close_left(slab, seam, ghost, r);
+                (l, pl) = (a, at(a));
+            }
+            (_, Some((ghost, b))) => {
+                seam = close_right(slab, seam, ghost, l);
+                (r, pr) = (b, at(b));
+            }
+            (_, None) => return seam,
         }
-        left = candidate_left(points, slab, seam, pl, pr);
-        right = candidate_right(points, slab, seam, pl, pr);
     }
 }
 
-/// The left candidate, once the hull edges that its circle forbids are gone: its ghost and vertex.
+/// The candidate on one side, once the hull edges that its circle forbids are gone: its ghost and vertex.
 #[inline(always)]
-fn candidate_left(points: &[DVec2], slab: &mut Slab<'_>, seam: u32, pl: DVec2, pr: DVec2) -> Option<(u32, u32)> {
-    let mut ghost = ring_next(slab, seam);
-    let mut vertex = slab.tri(ghost).v[0];
+fn candidate<const LEFT: bool>(
+    points: &[DVec2],
+    slab: &mut Slab<'_>,
+    seam: u32,
+    pl: DVec2,
+    pr: DVec2,
+) -> Option<(u32, u32)> {
+    let mut ghost = if LEFT { ring_next(slab, seam) } else { ring_prev(slab, seam) };
+    let mut vertex = slab.tri(ghost).v[usize::from(!LEFT)];
     let mut p = points[vertex as usize];
     if orient2d(pl, pr, p) != Sign::Positive {
         return None;
@@ -241,26 +242,10 @@ fn candidate_left(points: &[DVec2], slab: &mut Slab<'_>, seam: u32, pl: DVec2, p
             return Some((ghost, vertex));
         }
         open(slab, ghost, inner);
-        (ghost, vertex, p) = (inner >> 2, behind, points[behind as usize]);
-    }
-}
-
-/// As [`candidate_left`], mirrored.
-#[inline(always)]
-fn candidate_right(points: &[DVec2], slab: &mut Slab<'_>, seam: u32, pl: DVec2, pr: DVec2) -> Option<(u32, u32)> {
-    let ghost = ring_prev(slab, seam);
-    let mut vertex = slab.tri(ghost).v[1];
-    let mut p = points[vertex as usize];
-    if orient2d(pl, pr, p) != Sign::Positive {
-        return None;
-    }
-    loop {
-        let inner = slab.tri(ghost).n[2];
-        let behind = slab.apex(inner);
-        if behind == GHOST || incircle_canonical(pl, pr, p, points[behind as usize]) != Sign::Positive {
-            return Some((ghost, vertex));
+        // Of the two new hull edges the ghost keeps the later one: the one at the right end of the base.
+        if LEFT {
+            ghost = inner >> 2;
         }
-        open(slab, ghost, inner);
         (vertex, p) = (behind, points[behind as usize]);
     }
 }
