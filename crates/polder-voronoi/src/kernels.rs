@@ -51,6 +51,86 @@ impl Shader for AdvanceRound {
     }
 }
 
+/// Bounds of points, 2 of 2: one workgroup joins what the others found.
+#[derive(Debug, Clone, Copy)]
+pub enum BoundPartials {}
+
+/// Arguments of [`BoundPartials`].
+#[derive(Debug, Clone, Copy)]
+pub struct BoundPartialsArgs<'a> {
+    /// read
+    pub partial: View<'a, u64>,
+    /// written
+    pub bounds: View<'a, u64>,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for BoundPartials {
+    type Args<'a> = BoundPartialsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "bound_partials",
+        words: include_spirv!("../spv/bound_partials.spv"),
+        argument_bytes: 20,
+        buffers: &[
+            BufferArgument { name: "partial", offset: 0, access: Access::Read },
+            BufferArgument { name: "bounds", offset: 8, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "97f04b92e77f4aa474b2064e9431157507dee85d51b06e6d52fe52b3bea3a7c4",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.partial);
+        encoder.buffer(8, args.bounds);
+        encoder.value(16, args.count);
+    }
+}
+
+/// Bounds of points, 1 of 2: every workgroup strides over all points and writes the bounds of those that it met.
+#[derive(Debug, Clone, Copy)]
+pub enum BoundPoints {}
+
+/// Arguments of [`BoundPoints`].
+#[derive(Debug, Clone, Copy)]
+pub struct BoundPointsArgs<'a> {
+    /// read
+    pub points: View<'a, [u32; 4]>,
+    /// written
+    pub partial: View<'a, u64>,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for BoundPoints {
+    type Args<'a> = BoundPointsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "bound_points",
+        words: include_spirv!("../spv/bound_points.spv"),
+        argument_bytes: 20,
+        buffers: &[
+            BufferArgument { name: "points", offset: 0, access: Access::Read },
+            BufferArgument { name: "partial", offset: 8, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "e64a41162e5a3f16f6f28b3bcfc9388dffc4085b6644d5bde0ae56da70623b5a",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.points);
+        encoder.buffer(8, args.partial);
+        encoder.value(16, args.count);
+    }
+}
+
 /// Debris, 3 of 3: marks those candidates that have lost their last closer neighbor of their own color.
 #[derive(Debug, Clone, Copy)]
 pub enum CheckDebris {}

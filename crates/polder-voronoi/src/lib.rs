@@ -22,6 +22,7 @@
 //! \[QCT\] section 3.1, Appendix A and B; \[CET\] sections 2 and 3.1. Full entries are in `references.bib`.
 #![forbid(unsafe_code)]
 
+mod bounds;
 mod diagram;
 mod error;
 pub mod gpu;
@@ -32,6 +33,7 @@ pub mod reference;
 mod sites;
 mod text;
 
+pub use bounds::Bounds;
 pub use diagram::{Counts, Diagram, UNCOLORED};
 pub use error::VoronoiError;
 pub use glam::DVec2;

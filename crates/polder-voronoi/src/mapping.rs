@@ -31,7 +31,8 @@
 //! truncates instead of flooring, its largest coordinate falls off the grid, and its range overflows or vanishes for
 //! the largest and smallest numbers. Its sites stand at the lower left corners of pixels; here at their centers.
 
-use crate::VoronoiError;
+use crate::bounds::checked_count;
+use crate::{Bounds, VoronoiError};
 use glam::DVec2;
 
 /// The longest side of a grid, in pixels.
@@ -96,7 +97,17 @@ impl GridMapping {
     ///
     /// If there are no points, a coordinate is not finite, or the resolution is out of its range.
     pub fn fit(points: &[DVec2], options: &Options) -> Result<Self, VoronoiError> {
-        let [low, high] = bounding_box(points)?;
+        Self::fit_bounds(&Bounds::of(points)?, points.len(), options)
+    }
+
+    /// Fits a grid to a bounding box of so many points: the same grid as the points themselves give.
+    ///
+    /// # Errors
+    ///
+    /// If the number is zero or more than 32-bit numbers can count, or the resolution is out of its range.
+    pub fn fit_bounds(bounds: &Bounds, points: usize, options: &Options) -> Result<Self, VoronoiError> {
+        checked_count(points)?;
+        let (low, high) = (bounds.low(), bounds.high());
         let largest = [low, high].into_iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let finest = last_place(largest);
         let floors = |p: DVec2| p.to_array().map(|x| floor_units(x, finest));
@@ -107,7 +118,7 @@ impl GridMapping {
             if low[k] == high[k] { 0 } else { extent as u64 }
         });
         let longer = extent[0].max(extent[1]);
-        let side = longer_side(points.len(), extent, options.resolution)?;
+        let side = longer_side(points, extent, options.resolution)?;
 
         let mut doublings = 0;
         let half_at = |doublings: u32| u128::from(longer).div_ceil(u128::from(2 * side) << doublings);
@@ -188,19 +199,6 @@ impl Axis {
         let center = (toward_zero(low) + toward_zero(high)) / 2;
         Self { translation: center - half, pixels: 1 }
     }
-}
-
-fn bounding_box(points: &[DVec2]) -> Result<[DVec2; 2], VoronoiError> {
-    let Some(&first) = points.first() else { return Err(VoronoiError::NoPoints) };
-    let limit = (u32::MAX - 1) as usize;
-    if points.len() > limit {
-        return Err(VoronoiError::TooManyPoints { points: points.len(), limit });
-    }
-    if let Some(point) = points.iter().position(|p| !p.is_finite()) {
-        let axis = if points[point].x.is_finite() { 'y' } else { 'x' };
-        return Err(VoronoiError::NonFiniteCoordinate { point, axis });
-    }
-    Ok(points.iter().fold([first; 2], |[low, high], &p| [low.min(p), high.max(p)]))
 }
 
 /// Pixels along the longer side: what the caller says, or such that the area has the pixels wanted.

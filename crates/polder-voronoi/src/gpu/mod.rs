@@ -15,9 +15,11 @@
 //! the total order of [`Key`](crate::Key) in every step, and the last step is a search and not a walk. Lists of debris are
 //! appended to in the order of arrival; what is handed on comes out of a compaction, ascending.
 
+mod bounds;
 mod buffers;
 mod record;
 
+pub use bounds::{BoundsRead, FindBounds};
 pub use buffers::{Buffers, CountsRead};
 
 use crate::kernels::*;

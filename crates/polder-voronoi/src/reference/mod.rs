@@ -2,6 +2,7 @@
 //!
 //! The steps in order: [`map`], [`color`], [`debris`], [`recolor`]; [`diagram`] is all of them.
 
+mod bounds;
 mod color;
 mod debris;
 pub mod flooding;
@@ -9,6 +10,7 @@ pub mod kernels;
 mod map;
 mod recolor;
 
+pub use bounds::{bound_partials, bound_points};
 pub use color::color;
 pub use debris::debris;
 pub use map::{elect, map};
