@@ -29,6 +29,8 @@
 #![forbid(unsafe_code)]
 
 mod error;
+pub mod gpu;
+pub mod kernels;
 mod outcome;
 pub mod reference;
 

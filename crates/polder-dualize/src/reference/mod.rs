@@ -9,6 +9,7 @@ mod dualize;
 pub(crate) mod elect;
 mod graft;
 mod insert;
+pub mod kernels;
 mod key;
 mod locate;
 mod sector;

@@ -1,0 +1,5 @@
+//! The stages on the device, bit for bit what [`reference`](crate::reference) gives.
+
+pub mod dualize;
+pub mod insert;
+pub mod shift;

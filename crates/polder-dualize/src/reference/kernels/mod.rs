@@ -1,0 +1,3 @@
+//! What each kernel does, under its name: a module for each stage.
+
+pub mod dualize;

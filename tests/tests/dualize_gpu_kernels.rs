@@ -1,0 +1,83 @@
+//! Each kernel of stage 2 against the reference of its name, bit for bit.
+#![cfg(feature = "gpu-tests")]
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod voronoi_gpu_support;
+mod vulkan_support;
+
+use polder_dualize::gpu::dualize::{count_groups, words_of};
+use polder_dualize::kernels::*;
+use polder_dualize::reference::kernels::dualize as expected;
+use polder_tests::families;
+use polder_voronoi::{Diagram, Options, Sites, reference};
+use polder_vulkan::{Kernel, Shader};
+use voronoi_gpu_support::{grids, with_device};
+use vulkan_support::{Gpu, words};
+
+const NONE: u32 = u32::MAX;
+
+/// Runs one kernel.
+fn run<S: Shader>(gpu: &mut Gpu, groups: [u32; 3], arguments: &S::Args<'_>) {
+    let kernel = Kernel::<S>::new(&gpu.device, &[]).unwrap();
+    let mut recording = gpu.recording();
+    recording.dispatch(&kernel, groups, arguments);
+    gpu.run(&recording);
+}
+
+/// Flooded diagrams of every family and of grids of every shape, and colorings that no flooding gives.
+fn diagrams() -> Vec<(String, Diagram, Sites)> {
+    let mut all = Vec::new();
+    for (name, pslg) in families(700, 5) {
+        let output = reference::diagram(pslg.points(), &Options::default()).unwrap();
+        all.push((name.to_owned(), output.diagram, output.sites));
+    }
+    for (name, sites) in grids() {
+        all.push((name, reference::flooding::flood(&sites).unwrap().diagram, sites));
+    }
+    for seed in 0..12 {
+        let size = [1 + seed as u32 * 7 % 70, 1 + seed as u32 * 13 % 50];
+        let sites = voronoi_gpu_support::anywhere(size, 1 + seed as usize, seed);
+        let colors = words(seed, (size[0] * size[1]) as usize).iter().map(|w| w % (sites.count as u32 + 1)).collect();
+        let diagram = Diagram { width: size[0], height: size[1], colors, debris: Vec::new() };
+        all.push((format!("random colors, {size:?}"), diagram, sites));
+    }
+    all
+}
+
+#[test]
+fn dualize_count() {
+    with_device(|shared| {
+        let gpu = &mut shared.gpu;
+        let (mut necks, mut crossings, mut uncolored) = (0, 0, 0);
+        for (name, diagram, sites) in diagrams() {
+            let count = words_of([diagram.width, diagram.height]);
+            let (colors, sites_word) = (gpu.buffer(&diagram.colors), gpu.buffer(&[sites.count as u32]));
+            let (vertices, counts) = (gpu.buffer(&vec![[7_u32; 2]; count]), gpu.buffer(&vec![7_u32; count]));
+            let (neck_word, ghost_word) = (gpu.buffer(&[0_u32]), gpu.buffer(&[0_u32]));
+            let (crossing_word, uncolored_word) = (gpu.buffer(&[NONE]), gpu.buffer(&[NONE]));
+            let arguments = DualizeCountArgs {
+                colors: colors.view(),
+                sites: sites_word.view(),
+                vertices: vertices.view().cast(),
+                counts: counts.view(),
+                necks: neck_word.view(),
+                ghosts: ghost_word.view(),
+                crossing: crossing_word.view(),
+                uncolored: uncolored_word.view(),
+                width: diagram.width,
+                height: diagram.height,
+            };
+            run::<DualizeCount>(gpu, count_groups([diagram.width, diagram.height]), &arguments);
+            let expected = expected::dualize_count(&diagram, sites.count as u32);
+            assert!(gpu.fetch(vertices.view()) == expected.vertices, "{name}: vertices");
+            assert!(gpu.fetch(counts.view()) == expected.counts, "{name}: counts");
+            let found = [neck_word, ghost_word, crossing_word, uncolored_word].map(|word| gpu.fetch(word.view())[0]);
+            let wanted = [expected.necks, expected.ghosts, expected.crossing, expected.uncolored];
+            assert_eq!(found, wanted, "{name}");
+            necks += expected.necks;
+            crossings += u32::from(expected.crossing != NONE);
+            uncolored += u32::from(expected.uncolored != NONE);
+        }
+        assert!(necks > 0 && crossings > 0 && uncolored > 0, "{necks} {crossings} {uncolored} show nothing");
+    });
+}
