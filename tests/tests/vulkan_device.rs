@@ -203,6 +203,25 @@ fn an_engine_goes_on_after_a_time_out() {
 }
 
 #[test]
+fn kernels_are_compiled_once_a_device() {
+    let gpu = Gpu::open();
+    let first = (Sort::<u32>::new(&gpu.device, 500).unwrap(), Compact::new(&gpu.device, 500).unwrap());
+    let compiled = gpu.device.pipelines();
+    assert_eq!(compiled, 8);
+    // Other lengths, also after the first ones are gone, and from several threads.
+    drop(first);
+    std::thread::scope(|scope| {
+        for len in [9, 4000, 100_000] {
+            let device = &gpu.device;
+            scope.spawn(move || (Sort::<u32>::new(device, len).unwrap(), Compact::new(device, len).unwrap()));
+        }
+    });
+    assert_eq!(gpu.device.pipelines(), compiled);
+    drop(Sort::<u64>::new(&gpu.device, 500).unwrap());
+    assert_eq!(gpu.device.pipelines(), compiled + 2);
+}
+
+#[test]
 fn pipelines_are_kept_on_disk() {
     let folder = tempfile::tempdir().unwrap();
     let cached = DeviceOptions { cache: CacheFolder::At(folder.path().join("new")), ..options() };

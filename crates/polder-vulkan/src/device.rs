@@ -5,6 +5,7 @@ use crate::error::Called;
 use crate::faults::Faults;
 use crate::info::{DeviceInfo, Feature};
 use crate::instance::{Instance, one_at_a_time};
+use crate::kernel::Pipelines;
 use crate::memory::{Memory, MemoryUse};
 use crate::self_test::SelfTest;
 use crate::{Error, Selection};
@@ -55,6 +56,7 @@ pub(crate) struct DeviceInner {
     pub(crate) family: u32,
     pub(crate) memory: Memory,
     pub(crate) cache: PipelineCache,
+    pub(crate) pipelines: Pipelines,
     pub(crate) faults: Faults,
     pub(crate) self_test: OnceLock<SelfTest>,
     lost: AtomicBool,
@@ -185,6 +187,7 @@ impl Device {
             family,
             memory: Memory::new(allocator, memory_cap),
             cache,
+            pipelines: Pipelines::default(),
             faults: Faults::default(),
             self_test: OnceLock::new(),
             lost: AtomicBool::new(false),
@@ -229,6 +232,11 @@ impl Device {
         self.inner.instance.messages()
     }
 
+    /// Pipelines compiled so far: one for each kernel and choice of its constants.
+    pub fn pipelines(&self) -> usize {
+        self.inner.pipelines.count()
+    }
+
     /// Writes newly compiled pipelines to the cache. Done when the device goes, too.
     pub fn save_pipelines(&self) {
         self.inner.cache.save(&self.inner.raw);
@@ -257,12 +265,15 @@ impl DeviceInner {
 impl Drop for DeviceInner {
     fn drop(&mut self) {
         let _alone = one_at_a_time();
-        self.cache.save(&self.raw);
-        self.cache.destroy(&self.raw);
         if self.owned {
             // Whatever is in flight after a timeout has to end before the memory goes; a lost device answers at once.
             // SAFETY: the device is alive and nobody else can hold its queue any more.
             let _ = unsafe { self.raw.device_wait_idle() };
+        }
+        self.cache.save(&self.raw);
+        self.cache.destroy(&self.raw);
+        self.pipelines.destroy(&self.raw);
+        if self.owned {
             self.memory.release();
             // SAFETY: everything made from the device kept it alive, so all of that is gone.
             unsafe { self.raw.destroy_device(None) };

@@ -6,14 +6,81 @@ use crate::error::Called;
 use crate::info::Feature;
 use crate::shader::{Code, Shader, Side};
 use ash::vk;
+use std::collections::HashMap;
 use std::marker::PhantomData;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 pub(crate) struct KernelInner {
     pub(crate) name: &'static str,
     pub(crate) pipeline: vk::Pipeline,
     pub(crate) layout: vk::PipelineLayout,
     pub(crate) device: Arc<DeviceInner>,
+}
+
+/// What was compiled. It belongs to its device, and goes with it.
+#[derive(Clone, Copy)]
+pub(crate) struct Pipeline {
+    pipeline: vk::Pipeline,
+    layout: vk::PipelineLayout,
+}
+
+impl Pipeline {
+    /// # Safety
+    ///
+    /// It is of this device, in no use, and never used again.
+    unsafe fn destroy(self, raw: &ash::Device) {
+        // SAFETY: as the caller says.
+        unsafe {
+            raw.destroy_pipeline(self.pipeline, None);
+            raw.destroy_pipeline_layout(self.layout, None);
+        }
+    }
+}
+
+type Made = HashMap<(usize, Vec<u32>), Pipeline>;
+
+/// All that was compiled for a device, by code and constants.
+#[derive(Default)]
+pub(crate) struct Pipelines {
+    made: Mutex<Made>,
+}
+
+impl Pipelines {
+    fn get(&self, device: &DeviceInner, code: &Code, values: Vec<u32>) -> Result<Pipeline, Error> {
+        device.alive()?;
+        // Code is static, so its place tells it from all other code.
+        let key = (code.words.as_ptr() as usize, values);
+        if let Some(known) = self.made().get(&key) {
+            return Ok(*known);
+        }
+        // Unlocked: threads may compile side by side.
+        let (pipeline, layout) = build(device, code, &key.1)?;
+        let own = Pipeline { pipeline, layout };
+        let kept = *self.made().entry(key).or_insert(own);
+        if kept.pipeline != own.pipeline {
+            // SAFETY: made a moment ago; another thread was faster, and nobody knows of this one.
+            unsafe { own.destroy(&device.raw) };
+        }
+        Ok(kept)
+    }
+
+    fn made(&self) -> MutexGuard<'_, Made> {
+        self.made.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(crate) fn count(&self) -> usize {
+        self.made().len()
+    }
+
+    /// Once nothing is left that was made from the device.
+    pub(crate) fn destroy(&mut self, raw: &ash::Device) {
+        let made = self.made.get_mut().unwrap_or_else(PoisonError::into_inner);
+        for (_, pipeline) in made.drain() {
+            // SAFETY: of this device; kernels keep their device, and recordings and engines what is in flight, so it is
+            // in no use.
+            unsafe { pipeline.destroy(raw) };
+        }
+    }
 }
 
 /// A shader, compiled for a device.
@@ -36,8 +103,9 @@ impl<S> std::fmt::Debug for Kernel<S> {
 }
 
 impl<S: Shader> Kernel<S> {
-    /// Compiles, or takes from the cache. `constants` sets specialization constants by name; the others keep their
-    /// defaults. Fails where the device lacks a feature or the workgroup passes its limits.
+    /// Compiles once a device; again with the same constants it costs a look into a table. `constants` sets
+    /// specialization constants by name; the others keep their defaults. Fails where the device lacks a feature or the
+    /// workgroup passes its limits.
     pub fn new(device: &Device, constants: &[(&'static str, u32)]) -> Result<Self, Error> {
         let code = &S::CODE;
         let values = specialize(code, constants)?;
@@ -49,7 +117,7 @@ impl<S: Shader> Kernel<S> {
             }
         });
         check(device, code, workgroup)?;
-        let (pipeline, layout) = build(&device.inner, code, &values)?;
+        let Pipeline { pipeline, layout } = device.inner.pipelines.get(&device.inner, code, values)?;
         let inner = KernelInner { name: code.name, pipeline, layout, device: Arc::clone(&device.inner) };
         Ok(Kernel { inner: Arc::new(inner), workgroup, of: PhantomData })
     }
@@ -94,8 +162,7 @@ fn check(device: &Device, code: &Code, workgroup: [u32; 3]) -> Result<(), Error>
     Ok(())
 }
 
-fn build(device: &Arc<DeviceInner>, code: &Code, values: &[u32]) -> Result<(vk::Pipeline, vk::PipelineLayout), Error> {
-    device.alive()?;
+fn build(device: &DeviceInner, code: &Code, values: &[u32]) -> Result<(vk::Pipeline, vk::PipelineLayout), Error> {
     let (words, _) = code.words.as_chunks::<4>();
     let words: Vec<u32> = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
     let module = vk::ShaderModuleCreateInfo::default().code(&words);
@@ -108,7 +175,7 @@ fn build(device: &Arc<DeviceInner>, code: &Code, values: &[u32]) -> Result<(vk::
 }
 
 fn with_module(
-    device: &Arc<DeviceInner>,
+    device: &DeviceInner,
     code: &Code,
     values: &[u32],
     module: vk::ShaderModule,
@@ -147,16 +214,6 @@ fn with_module(
             // SAFETY: nothing was made with it.
             unsafe { device.raw.destroy_pipeline_layout(layout, None) };
             Err(result).called("vkCreateComputePipelines")
-        }
-    }
-}
-
-impl Drop for KernelInner {
-    fn drop(&mut self) {
-        // SAFETY: of this device; recordings and engines hold what is in flight alive, so they are in no use.
-        unsafe {
-            self.device.raw.destroy_pipeline(self.pipeline, None);
-            self.device.raw.destroy_pipeline_layout(self.layout, None);
         }
     }
 }

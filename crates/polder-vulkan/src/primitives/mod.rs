@@ -1,9 +1,10 @@
 //! Scan, compaction, reduction, sort, copy: what stages are made of.
 //!
 //! Each is made once for a capacity, which says how much it holds ([`Estimate`](crate::Estimate)), and then records any
-//! length up to it. A length is a number that the host knows, or one that the device wrote ([`Count`]). All work in tiles
-//! that one workgroup takes, in two or three kernels: sums of the tiles, a scan of the sums, the tiles again. No workgroup
-//! waits for another, which Vulkan would not promise to end; decoupled look-back, which reads memory once less, does.
+//! length up to it. Making one costs no more than its scratch memory, as kernels are compiled once a device. A length is a
+//! number that the host knows, or one that the device wrote ([`Count`]). All work in tiles that one workgroup takes, in two
+//! or three kernels: sums of the tiles, a scan of the sums, the tiles again. No workgroup waits for another, which Vulkan
+//! would not promise to end; decoupled look-back, which reads memory once less, does.
 
 mod compact;
 mod copy;
