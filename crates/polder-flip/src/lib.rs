@@ -14,6 +14,7 @@
 #![forbid(unsafe_code)]
 
 mod error;
+pub mod gpu;
 mod priority;
 pub mod reference;
 

@@ -184,7 +184,7 @@ fn run(
     Ok(report)
 }
 
-fn check_positions(mesh: &GhostMesh, positions: &[DVec2]) -> Result<(), FlipError> {
+pub(crate) fn check_positions(mesh: &GhostMesh, positions: &[DVec2]) -> Result<(), FlipError> {
     for (triangle, corners) in mesh.triangles.iter().enumerate() {
         if let Some(&vertex) = corners.iter().find(|&&v| v < DELETED && v as usize >= positions.len()) {
             return Err(FlipError::MissingPosition { triangle, vertex, positions: positions.len() });
