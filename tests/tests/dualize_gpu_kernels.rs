@@ -5,7 +5,7 @@
 mod voronoi_gpu_support;
 mod vulkan_support;
 
-use polder_dualize::gpu::dualize::{count_groups, words_of};
+use polder_dualize::gpu::dualize::{count_groups, words_of, write_groups};
 use polder_dualize::kernels::*;
 use polder_dualize::reference::kernels::dualize as expected;
 use polder_tests::families;
@@ -79,5 +79,89 @@ fn dualize_count() {
             uncolored += u32::from(expected.uncolored != NONE);
         }
         assert!(necks > 0 && crossings > 0 && uncolored > 0, "{necks} {crossings} {uncolored} show nothing");
+    });
+}
+
+#[test]
+fn dualize_check() {
+    with_device(|shared| {
+        let gpu = &mut shared.gpu;
+        let mut good = 0;
+        for sites in [0, 1, 2, 3, 1000, 1 << 29] {
+            let right: u32 = if sites < 2 { 0 } else { 2 * sites - 2 };
+            for total in [right, right + 1, right.wrapping_sub(1)] {
+                for (crossing, uncolored) in [(NONE, NONE), (3, NONE), (NONE, 0)] {
+                    for limit in [1 << 30, right, right.saturating_sub(1)] {
+                        let words = [sites, total, crossing, uncolored].map(|word| gpu.buffer(&[word]));
+                        let slots = gpu.buffer(&[7_u32]);
+                        let arguments = DualizeCheckArgs {
+                            sites: words[0].view(),
+                            total: words[1].view(),
+                            crossing: words[2].view(),
+                            uncolored: words[3].view(),
+                            slots: slots.view(),
+                            limit,
+                        };
+                        run::<DualizeCheck>(gpu, [1, 1, 1], &arguments);
+                        let wanted = expected::dualize_check(sites, total, crossing, uncolored, limit);
+                        assert_eq!(gpu.fetch(slots.view()), [wanted], "{sites} {total} {limit}");
+                        good += u32::from(wanted > 0);
+                    }
+                }
+            }
+        }
+        assert!(good > 0);
+    });
+}
+
+#[test]
+fn dualize_write() {
+    with_device(|shared| {
+        let gpu = &mut shared.gpu;
+        let (mut folded, mut lines) = (0, 0);
+        for (turn, (name, diagram, sites)) in diagrams().into_iter().enumerate() {
+            let counted = expected::dualize_count(&diagram, sites.count as u32);
+            if counted.crossing != NONE || counted.uncolored != NONE {
+                continue;
+            }
+            let (first, slots) = polder_vulkan::reference::exclusive_scan(&counted.counts);
+            // Every other diagram gets its sites in strange places, so that some triangles are not counterclockwise.
+            let mut pixels = sites.pixels.clone();
+            if turn % 2 == 1 {
+                pixels.iter_mut().zip(words(turn as u64, sites.count)).for_each(|(pixel, w)| {
+                    *pixel = [(w % 32768) as u16, (w >> 17) as u16];
+                });
+            }
+            let colors = gpu.buffer(&diagram.colors);
+            let (places, vertices) = (gpu.buffer(&pixels), gpu.buffer(&counted.vertices));
+            let (first_buffer, slots_word) = (gpu.buffer(&first), gpu.buffer(&[slots]));
+            let room = slots as usize + 1;
+            let (triangles, links) = (gpu.buffer(&vec![[7_u32; 3]; room]), gpu.buffer(&vec![[7_u32; 3]; room]));
+            let (lost_word, folded_word) = (gpu.buffer(&[NONE]), gpu.buffer(&[NONE]));
+            let arguments = DualizeWriteArgs {
+                colors: colors.view(),
+                pixels: places.view().cast(),
+                vertices: vertices.view().cast(),
+                first: first_buffer.view(),
+                slots: slots_word.view(),
+                triangles: triangles.view().cast(),
+                links: links.view().cast(),
+                lost: lost_word.view(),
+                folded: folded_word.view(),
+                width: diagram.width,
+                height: diagram.height,
+            };
+            run::<DualizeWrite>(gpu, write_groups([diagram.width, diagram.height]), &arguments);
+            let mut expected = expected::dualize_write(&diagram, &pixels, &counted.vertices, &first, slots);
+            let found = [lost_word, folded_word].map(|word| gpu.fetch(word.view())[0]);
+            assert_eq!(found, [expected.lost, expected.folded], "{name}");
+            expected.mesh.triangles.push([7; 3]);
+            expected.mesh.links.push([7; 3]);
+            assert!(gpu.fetch(triangles.view()) == expected.mesh.triangles, "{name}: triangles");
+            assert!(gpu.fetch(links.view()) == expected.mesh.links, "{name}: links");
+            folded += u32::from(expected.folded != NONE);
+            lines += u32::from(slots > 0 && expected.mesh.finite().next().is_none());
+        }
+        assert!(folded > 10 && lines > 10, "{folded} {lines} show nothing");
     });
 }

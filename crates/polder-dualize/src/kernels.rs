@@ -2,6 +2,58 @@
 
 use polder_vulkan::{Access, BufferArgument, Code, Constant, Encoder, Shader, Side, View, include_spirv};
 
+/// Dualize, 2 of 3: how many triangles there will be: none if the diagram is not one that flooding gives.
+#[derive(Debug, Clone, Copy)]
+pub enum DualizeCheck {}
+
+/// Arguments of [`DualizeCheck`].
+#[derive(Debug, Clone, Copy)]
+pub struct DualizeCheckArgs<'a> {
+    /// read
+    pub sites: View<'a, u32>,
+    /// read
+    pub total: View<'a, u32>,
+    /// read
+    pub crossing: View<'a, u32>,
+    /// read
+    pub uncolored: View<'a, u32>,
+    /// written
+    pub slots: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+}
+
+impl Shader for DualizeCheck {
+    type Args<'a> = DualizeCheckArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "dualize_check",
+        words: include_spirv!("../spv/dualize_check.spv"),
+        argument_bytes: 44,
+        buffers: &[
+            BufferArgument { name: "sites", offset: 0, access: Access::Read },
+            BufferArgument { name: "total", offset: 8, access: Access::Read },
+            BufferArgument { name: "crossing", offset: 16, access: Access::Read },
+            BufferArgument { name: "uncolored", offset: 24, access: Access::Read },
+            BufferArgument { name: "slots", offset: 32, access: Access::Write },
+        ],
+        workgroup: [Side::Fixed(1), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "e6e1c984ae9c9ad52065c02b8e586372b71bc733e0991c9a8901a6f80279909a",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.sites);
+        encoder.buffer(8, args.total);
+        encoder.buffer(16, args.crossing);
+        encoder.buffer(24, args.uncolored);
+        encoder.buffer(32, args.slots);
+        encoder.value(40, args.limit);
+    }
+}
+
 /// Dualize, 1 of 3: finds the digital Voronoi vertices among the corners of the grid. For each word of corners: which are
 /// vertices, which of these have two triangles, and how many triangles there are. A workgroup takes 256 corners of each of
 /// 8 rows.
@@ -74,5 +126,80 @@ impl Shader for DualizeCount {
         encoder.buffer(56, args.uncolored);
         encoder.value(64, args.width);
         encoder.value(68, args.height);
+    }
+}
+
+/// Dualize, 3 of 3: writes the triangles of each digital Voronoi vertex, and links them by following the borders that leave
+/// it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
+/// invocations; each half-edge is written by one of them.
+///
+/// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead.
+#[derive(Debug, Clone, Copy)]
+pub enum DualizeWrite {}
+
+/// Arguments of [`DualizeWrite`].
+#[derive(Debug, Clone, Copy)]
+pub struct DualizeWriteArgs<'a> {
+    /// read
+    pub colors: View<'a, u32>,
+    /// read
+    pub pixels: View<'a, u32>,
+    /// read
+    pub vertices: View<'a, [u32; 2]>,
+    /// read
+    pub first: View<'a, u32>,
+    /// read
+    pub slots: View<'a, u32>,
+    /// written
+    pub triangles: View<'a, u32>,
+    /// written
+    pub links: View<'a, u32>,
+    /// read and written
+    pub lost: View<'a, u32>,
+    /// read and written
+    pub folded: View<'a, u32>,
+    /// a value
+    pub width: u32,
+    /// a value
+    pub height: u32,
+}
+
+impl Shader for DualizeWrite {
+    type Args<'a> = DualizeWriteArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "dualize_write",
+        words: include_spirv!("../spv/dualize_write.spv"),
+        argument_bytes: 80,
+        buffers: &[
+            BufferArgument { name: "colors", offset: 0, access: Access::Read },
+            BufferArgument { name: "pixels", offset: 8, access: Access::Read },
+            BufferArgument { name: "vertices", offset: 16, access: Access::Read },
+            BufferArgument { name: "first", offset: 24, access: Access::Read },
+            BufferArgument { name: "slots", offset: 32, access: Access::Read },
+            BufferArgument { name: "triangles", offset: 40, access: Access::Write },
+            BufferArgument { name: "links", offset: 48, access: Access::Write },
+            BufferArgument { name: "lost", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "folded", offset: 64, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["GroupNonUniform", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "d90028c9808df6bd7c18c43a5bc6e545e9af1c8d7f40cec0460afc62a560ce53",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.colors);
+        encoder.buffer(8, args.pixels);
+        encoder.buffer(16, args.vertices);
+        encoder.buffer(24, args.first);
+        encoder.buffer(32, args.slots);
+        encoder.buffer(40, args.triangles);
+        encoder.buffer(48, args.links);
+        encoder.buffer(56, args.lost);
+        encoder.buffer(64, args.folded);
+        encoder.value(72, args.width);
+        encoder.value(76, args.height);
     }
 }

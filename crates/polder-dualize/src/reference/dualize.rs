@@ -16,7 +16,7 @@
 //! Following a border needs no memory and no hashing. At a corner with two borders there is one way on. At a neck, one
 //! of the two colors is on a single pixel there, and the border bends around that pixel. It always ends: read backwards
 //! the way is unique as well, so it cannot close up without passing the vertex that it left. All ways together are as
-//! long as all borders, twice.
+//! long as all borders, twice. A bound keeps colorings that flooding does not make from taking longer.
 //!
 //! # The hull
 //!
@@ -49,6 +49,9 @@ use polder_flip::reference::close_hull;
 use polder_mesh::{GhostMesh, NONE};
 use polder_voronoi::{Diagram, Sites};
 
+/// How long a border may be: flooding makes none that is nearly as long, on any grid.
+const LONGEST_BORDER: u32 = 1 << 22;
+
 /// Dualizes a flooded diagram to a triangulation of its sites, with a convex hull.
 ///
 /// Sites stand at the centers of their pixels; any exact image of the grid, turned or stretched along its axes alike,
@@ -74,35 +77,55 @@ pub fn dualize(diagram: &Diagram, sites: &Sites) -> Result<Dualized, DualizeErro
 /// As [`dualize`].
 pub fn dual(diagram: &Diagram, sites: &Sites) -> Result<(GhostMesh, u64), DualizeError> {
     check(diagram, sites)?;
-    let corners_in_row = diagram.width + 1;
-    let corner = |i: usize| Corner { x: i as u32 % corners_in_row, y: i as u32 / corners_in_row };
-    let count = corners_in_row as usize * (diagram.height as usize + 1);
-
-    // Step 1. `first[i]` is the slot of corner i's first triangle.
-    let mut first = vec![0u32; count];
-    let (mut total, mut necks) = (0, 0);
-    for (i, first) in first.iter_mut().enumerate() {
-        let kind = kind(colors(diagram, corner(i)));
+    // Step 1.
+    let mut necks = 0;
+    let mut first = Vec::with_capacity(corner_count(diagram));
+    let mut total = 0;
+    for corner in corners(diagram) {
+        let kind = kind(colors(diagram, corner));
         match kind {
-            Kind::Crossing => return Err(DualizeError::CrossingNecks { x: corner(i).x, y: corner(i).y }),
+            Kind::Crossing => return Err(DualizeError::CrossingNecks { x: corner.x, y: corner.y }),
             Kind::Neck { .. } => necks += 1,
             _ => {}
         }
-        *first = total;
+        first.push(total);
         total += kind.triangles();
     }
-    // A sphere of the sites and the ghost; one site alone has no edge and no triangle.
-    let expected = if sites.count < 2 { 0 } else { 2 * sites.count - 2 };
+    let expected = triangles_of(sites.count);
     if total as usize != expected {
         return Err(DualizeError::NotASphere { triangles: total as usize, sites: sites.count, expected });
     }
+    let (mesh, lost) = write(diagram, &first, expected);
+    if let Some(Corner { x, y }) = lost {
+        return Err(DualizeError::CrossingNecks { x, y });
+    }
+    each_site_is_seen(&mesh, sites.count)?;
+    Ok((mesh, necks))
+}
 
-    // Steps 2 and 3.
-    let mut mesh = GhostMesh::with_slots(total as usize);
-    for i in 0..count {
-        let c = colors(diagram, corner(i));
+/// The triangles of a sphere with the sites and the ghost as vertices; one site alone has no edge and no triangle.
+pub fn triangles_of(sites: usize) -> usize {
+    if sites < 2 { 0 } else { 2 * sites - 2 }
+}
+
+fn corner_count(diagram: &Diagram) -> usize {
+    (diagram.width as usize + 1) * (diagram.height as usize + 1)
+}
+
+fn corners(diagram: &Diagram) -> impl Iterator<Item = Corner> + use<> {
+    let (width, height) = (diagram.width, diagram.height);
+    (0..=height).flat_map(move |y| (0..=width).map(move |x| Corner { x, y }))
+}
+
+/// Steps 2 and 3, where `first` is the slot of each corner's first triangle. Where a border leads nowhere there is no
+/// link; the first corner with such a border comes back.
+pub(super) fn write(diagram: &Diagram, first: &[u32], slots: usize) -> (GhostMesh, Option<Corner>) {
+    let mut mesh = GhostMesh::with_slots(slots);
+    let mut lost = None;
+    for (corner, &first_here) in corners(diagram).zip(first) {
+        let c = colors(diagram, corner);
         let kind = kind(c);
-        let t = first[i] as usize;
+        let t = first_here as usize;
         match kind {
             Kind::Three { r } => mesh.triangles[t] = [c[(r + 1) % 4], c[(r + 2) % 4], c[(r + 3) % 4]],
             Kind::Four => {
@@ -113,26 +136,28 @@ pub fn dual(diagram: &Diagram, sites: &Sites) -> Result<(GhostMesh, u64), Dualiz
             _ => continue,
         }
         for s in (0..4).filter(|&s| c[s] != c[(s + 1) % 4]) {
-            let h = kind.half_edge(first[i], s);
-            let (to, side) = follow(diagram, corner(i), s)?;
-            let j = to.y as usize * corners_in_row as usize + to.x as usize;
+            let h = kind.half_edge(first_here, s);
+            let Some((to, side)) = follow(diagram, corner, s) else {
+                lost.get_or_insert(corner);
+                continue;
+            };
+            let j = to.y as usize * (diagram.width as usize + 1) + to.x as usize;
             let g = self::kind(colors(diagram, to)).half_edge(first[j], side);
             mesh.links[h as usize / 3][h as usize % 3] = g;
         }
     }
-    each_site_is_seen(&mesh, sites.count)?;
-    Ok((mesh, necks))
+    (mesh, lost)
 }
 
 /// Follows the border that leaves `corner` by side `s` to the next vertex, and by which of its sides it arrives.
-fn follow(diagram: &Diagram, corner: Corner, s: usize) -> Result<(Corner, usize), DualizeError> {
+fn follow(diagram: &Diagram, corner: Corner, s: usize) -> Option<(Corner, usize)> {
     let (mut at, mut out) = (corner, s);
-    for _ in 0..4 * (u64::from(diagram.width) + 1) * (u64::from(diagram.height) + 1) {
+    for _ in 0..LONGEST_BORDER {
         at = at.across(out);
         let arrived = (out + 2) % 4;
         let c = colors(diagram, at);
         out = match kind(c) {
-            Kind::Three { .. } | Kind::Four => return Ok((at, arrived)),
+            Kind::Three { .. } | Kind::Four => return Some((at, arrived)),
             // Around the pixel whose color is not repeated; its sides are those numbered q - 1 and q.
             Kind::Neck { r } => {
                 let q = if arrived % 2 == (r + 1) % 2 { arrived } else { (arrived + 1) % 4 };
@@ -141,7 +166,7 @@ fn follow(diagram: &Diagram, corner: Corner, s: usize) -> Result<(Corner, usize)
             _ => (1..4).map(|k| (arrived + k) % 4).find(|&s| c[s] != c[(s + 1) % 4]).unwrap_or(arrived),
         };
     }
-    Err(DualizeError::CrossingNecks { x: corner.x, y: corner.y })
+    None
 }
 
 fn check(diagram: &Diagram, sites: &Sites) -> Result<(), DualizeError> {

@@ -1,7 +1,9 @@
 //! The kernels of stage 2.
 
 use super::super::corners::{Corner, Kind, colors, kind};
-use polder_mesh::NONE;
+pub use super::super::dualize::triangles_of;
+use super::super::dualize::write;
+use polder_mesh::{GhostMesh, NONE};
 use polder_voronoi::Diagram;
 
 /// What [`dualize_count`] finds.
@@ -57,4 +59,52 @@ pub fn dualize_count(diagram: &Diagram, sites: u32) -> Counted {
         }
     }
     out
+}
+
+/// How many triangles there will be.
+pub fn dualize_check(sites: u32, total: u32, crossing: u32, uncolored: u32, limit: u32) -> u32 {
+    let expected = triangles_of(sites as usize) as u32;
+    let is_good = crossing == NONE && uncolored == NONE && total == expected && expected <= limit;
+    if is_good { expected } else { 0 }
+}
+
+/// What [`dualize_write`] writes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Written {
+    /// The triangles and their links; no link where a border leads nowhere.
+    pub mesh: GhostMesh,
+    /// The first corner that a border leaves and leads nowhere.
+    pub lost: u32,
+    /// The first finite triangle that is not counterclockwise.
+    pub folded: u32,
+}
+
+/// Writes the triangles of each digital Voronoi vertex, and links them; none if there are to be no `slots`. `first` is
+/// the slot of each word of corners, `pixels` where the sites are.
+pub fn dualize_write(
+    diagram: &Diagram,
+    pixels: &[[u16; 2]],
+    vertices: &[[u32; 2]],
+    first: &[u32],
+    slots: u32,
+) -> Written {
+    if slots == 0 {
+        return Written { mesh: GhostMesh::default(), lost: NONE, folded: NONE };
+    }
+    let slot = &|y: u32, x: u32| {
+        let word = (y * words_in_row(diagram.width) + x / 32) as usize;
+        let before: u32 = vertices[word].iter().map(|bits| (bits & !(u32::MAX << (x % 32))).count_ones()).sum();
+        first[word] + before
+    };
+    let first: Vec<u32> = (0..=diagram.height).flat_map(|y| (0..=diagram.width).map(move |x| slot(y, x))).collect();
+    let (mesh, lost) = write(diagram, &first, slots as usize);
+    let folded = mesh.finite().find(|&t| {
+        let [a, b, c] = mesh.triangles[t].map(|v| pixels[v as usize].map(i32::from));
+        (b[0] - a[0]) * (c[1] - a[1]) <= (b[1] - a[1]) * (c[0] - a[0])
+    });
+    Written {
+        mesh,
+        lost: lost.map_or(NONE, |Corner { x, y }| y * (diagram.width + 1) + x),
+        folded: folded.map_or(NONE, |t| t as u32),
+    }
 }
