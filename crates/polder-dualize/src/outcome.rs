@@ -26,18 +26,22 @@ pub struct Dualized {
 /// if there are any, then the mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Shifted {
-    /// The triangulation of the sites that are left, at their true positions. No slot is free.
+    /// The triangulation of the sites that are left, at their true positions. It has as many slots as the dualized mesh,
+    /// or none: the slots of the triangles that went with the sites taken out are free.
     pub mesh: GhostMesh,
     /// For each site itself if it is a vertex, else a vertex close to where it was taken out. [`polder_mesh::NONE`]
     /// for all of them if the mesh is empty, which counts as all being taken out.
     pub heirs: Vec<u32>,
+    /// For each site that was taken out the two slots that it left free; twice [`polder_mesh::NONE`] for a vertex, and
+    /// for all sites if the mesh is empty.
+    pub freed: Vec<[u32; 2]>,
     /// Sites pinned in the first step.
     pub bad: usize,
     /// Those of them that the second step could not free.
     pub stuck: usize,
     /// Rounds of pinning, of unpinning, of taking out.
     pub rounds: [u64; 3],
-    /// All ghost flips.
+    /// The ghost flips.
     pub hull: FlipReport,
 }
 

@@ -64,6 +64,8 @@ enum Container {
 /// [`DualizeError::Mismatch`] if `points` and `starts` differ in length or name a point without a position. Every other
 /// error means that the mesh was not a triangulation as above.
 pub fn insert(mesh: GhostMesh, positions: &[DVec2], points: &[u32], starts: &[u32]) -> Result<Inserted, DualizeError> {
+    let mut mesh = mesh;
+    mesh.compact();
     check(&mesh, positions, points, starts)?;
     let mut out = Inserted { vertex_of: (0..positions.len() as u32).collect(), ..Inserted::default() };
     if positions.is_empty() {

@@ -78,13 +78,12 @@ pub fn shift(mesh: GhostMesh, centers: &[DVec2], positions: &[DVec2]) -> Result<
     let bad = pinned.iter().filter(|&&p| p).count();
     let unpin_rounds = unpin(&mesh, centers, positions, &mut at, &mut pinned)?;
     let stuck = pinned.iter().filter(|&&p| p).count();
-    let mut hull = close_hull(&mut mesh, &at)?;
+    let hull = close_hull(&mut mesh, &at)?;
     certify(&mesh, &at, "shift")?;
     let taken = take_out(&mut mesh, &at, pinned)?;
-    hull += taken.hull;
     certify(&mesh, &positions[..sites], "take out")?;
     let rounds = [pin_rounds, unpin_rounds, taken.rounds];
-    Ok(Shifted { mesh, heirs: taken.heirs, bad, stuck, rounds, hull })
+    Ok(Shifted { mesh, heirs: taken.heirs, freed: taken.freed, bad, stuck, rounds, hull })
 }
 
 /// Step 1. Returns the number of rounds.

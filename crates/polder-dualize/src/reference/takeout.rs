@@ -4,12 +4,19 @@
 //!
 //! 1. Of the pinned vertices, those that have no pinned neighbor of lower priority are taken out now. No two of them
 //!    are neighbors, so their stars share no triangle.
-//! 2. A vertex inside: cut ears off its star until three neighbors are left, then replace the three triangles by one.
-//!    Cutting an ear is a flip of the edge to its tip, which goes from the star to the two neighbors beside it.
-//! 3. A vertex on the hull: its triangles become ghost triangles of the edges across, as if it were moved to infinity.
-//! 4. Ghost flips until the hull is convex again.
+//! 2. A vertex leaves an *heir*, from which later searches for it start: the lowest of its neighbors that are not pinned,
+//!    or the lowest of all.
+//! 3. A vertex inside: cut ears off its star, beginning at the heir, until three neighbors are left, then merge the
+//!    three triangles into one. Cutting an ear is a flip of the edge to its tip, which goes from the star to the two
+//!    neighbors beside it.
+//! 4. A vertex on the hull: cut ears off its star, from one neighbor on the hull to the other, until there is none. Then
+//!    move it to infinity: its finite triangles become ghost triangles, its two ghost triangles vanish.
 //!
 //! A pinned vertex counts at its pixel center, like its pinned neighbors: that is where the triangulation is valid.
+//!
+//! Each vertex frees two slots of the mesh, and they stay free. The dualized mesh of `s` sites has `2 s - 2` slots, and
+//! each point that the next stage inserts needs two. So each has two of its own, whatever else is inserted and when: a
+//! site that comes back those that it left, a missing point `i` the slots `2 i - 2` and `2 i - 1`.
 //!
 //! # Ears
 //!
@@ -19,37 +26,43 @@
 //! in which the vertex sees it, and so it holds no other neighbor, and what remains is again a star around the vertex,
 //! or has it on the cut edge.
 //!
-//! While more than three neighbors remain there is an ear. The star is a simple polygon, so it has two ears, in the
-//! usual sense, that do not overlap and whose tips are not the two ends of the cut edge the vertex lies on, if it lies
-//! on one. At most one of them can have the vertex inside; the vertex sees the tip of the other beyond its diagonal,
-//! which is what is demanded. With three left, the last triangle is counterclockwise for the same reason.
+//! While more than three neighbors of an inner vertex remain there is an ear. The star is a simple polygon, so it has two
+//! ears, in the usual sense, that do not overlap and whose tips are not the two ends of the cut edge the vertex lies on,
+//! if it lies on one. At most one of them can have the vertex inside; the vertex sees the tip of the other beyond its
+//! diagonal, which is what is demanded. With three left, the last triangle is counterclockwise for the same reason.
 //!
 //! The search walks around the star like Graham's scan: one step back after a cut, one step on otherwise. Whatever
 //! lies behind has been found to be no ear as it stands, so a star of `m` neighbors takes at most `3 m` steps, however
-//! large it is, and no memory. [`take_out`] starts it at the star's lowest half-edge, so that the outcome depends on
-//! nothing but the mesh.
+//! large it is, and no memory but the mesh. Where it starts depends on nothing but the mesh and who is pinned.
 //!
 //! # The hull
 //!
-//! With a hull vertex gone, the edges across its star are hull edges. Seen from where it was, they are a chain with
-//! ascending angles, and both ends of the chain turn left, since each has lost a triangle. So ghost flips concern the
-//! chain alone, and what they add lies in what was the star. Several neighbors of one vertex may go in one round: their
-//! stars do not overlap.
+//! The neighbors of a hull vertex are a chain that it sees with ascending angles, over half a turn at most. The scan is
+//! Graham's: it ends when the chain is nowhere strictly reflex seen from outside, and what it adds lies in what was the
+//! star. The two ends of the chain are vertices of the hull that each lose a triangle, so they turn left, and the hull is
+//! convex again. Several neighbors of one vertex may go in one round: their stars do not overlap.
 //!
-//! On a chain, a vertex is merged into one next to it: the two ghost triangles of the edge between them vanish. When fewer than three vertices that are not on a line remain, the mesh is therefore a chain, or empty
-//! when fewer than two remain, and it is the next stage that goes on from there.
+//! When fewer than three vertices that are not on a line remain, there is no finite triangle left. If none of them is
+//! pinned, they stay as a chain. Else the mesh becomes empty, and all sites count as taken out: the next stage then
+//! starts from scratch.
 //!
 //! # Heirs
 //!
-//! A vertex leaves an heir, from which later searches for it start: the first neighbor around it that is not pinned, or
-//! else the first one. An heir may go as well, in a later round; its own heir then serves.
+//! An heir may go as well, in a later round; its own heir then serves. So the way to an heir that stays has fewer steps
+//! than there are rounds.
+//!
+//! # In parallel
+//!
+//! The stars of a round share no triangle, but they may share edges, each of which one star sees on its outer side. All
+//! stars are cut at the same time, without touching a triangle that is not in the star; it is noted where each outer edge
+//! of the star has gone. Then each outer edge is linked: to the half-edge across if that is in no star, else to where
+//! that one has gone.
 
 use super::star::{broken, star};
 use crate::DualizeError;
 use glam::DVec2;
-use polder_flip::reference::close_hull;
-use polder_flip::{FlipReport, priority};
-use polder_mesh::{DELETED, GHOST, GhostMesh, NONE, next, prev};
+use polder_flip::priority;
+use polder_mesh::{GHOST, GhostMesh, NONE, next, prev};
 use polder_predicates::{Sign, orient2d};
 
 const STAGE: &str = "take out";
@@ -58,48 +71,54 @@ const STAGE: &str = "take out";
 pub(super) struct Taken {
     /// For each vertex itself if it is still there, else its heir, or [`NONE`] if the mesh is empty.
     pub(super) heirs: Vec<u32>,
+    /// For each vertex the slots that it freed, twice [`NONE`] if it is still there or the mesh is empty.
+    pub(super) freed: Vec<[u32; 2]>,
     pub(super) rounds: u64,
-    pub(super) hull: FlipReport,
 }
 
-/// Takes the pinned vertices out and closes the ranks: no slot of the mesh stays free.
+/// Takes the pinned vertices out.
 ///
 /// The mesh must be a triangulation of the positions `at` with a convex hull, or a chain, or empty.
 pub(super) fn take_out(mesh: &mut GhostMesh, at: &[DVec2], mut pinned: Vec<bool>) -> Result<Taken, DualizeError> {
     let mut heirs: Vec<u32> = (0..at.len() as u32).collect();
+    let mut freed = vec![[NONE; 2]; at.len()];
     let mut gone = Vec::new();
     let mut left = pinned.iter().filter(|&&p| p).count();
     let bound = left as u64;
     let mut rounds = 0;
-    let mut hull = FlipReport::default();
-    while left > 0 && mesh.triangles.iter().any(|t| t[0] != DELETED) {
+    if mesh.slots() == 0 {
+        heirs.fill(NONE);
+        return Ok(Taken { heirs, freed, rounds });
+    }
+    while left > 0 {
         if rounds == bound {
             return Err(DualizeError::BoundExceeded { stage: STAGE, bound });
         }
         rounds += 1;
+        if mesh.finite().next().is_none() {
+            *mesh = GhostMesh::default();
+            heirs.fill(NONE);
+            freed.fill([NONE; 2]);
+            return Ok(Taken { heirs, freed, rounds });
+        }
         let before = gone.len();
         for (v, h) in winners(mesh, &pinned) {
-            heirs[v as usize] = heir(mesh, h, &pinned);
-            remove(mesh, at, h)?;
+            let start = start(mesh, h, &pinned).ok_or(broken(STAGE, v))?;
+            heirs[v as usize] = mesh.destination(start);
+            freed[v as usize] = remove(mesh, at, start)?;
             gone.push(v);
         }
         gone[before..].iter().for_each(|&v: &u32| pinned[v as usize] = false);
         left -= gone.len() - before;
-        hull += close_hull(mesh, at)?;
     }
     // An heir went later than the vertex that named it, so from the last one back each heir is final when it is read.
     for &v in gone.iter().rev() {
-        let heir = heirs[v as usize];
-        heirs[v as usize] = heirs.get(heir as usize).copied().unwrap_or(NONE);
+        heirs[v as usize] = heirs[heirs[v as usize] as usize];
     }
-    mesh.compact();
-    if mesh.slots() == 0 {
-        heirs.fill(NONE);
-    }
-    Ok(Taken { heirs, rounds, hull })
+    Ok(Taken { heirs, freed, rounds })
 }
 
-/// Step 1: the vertices of this round, ascending, each with the lowest half-edge out of it.
+/// Step 1: the vertices of this round, ascending, each with a half-edge out of it.
 fn winners(mesh: &GhostMesh, pinned: &[bool]) -> Vec<(u32, u32)> {
     let is_pinned = |v: u32| pinned.get(v as usize).is_some_and(|&p| p);
     let mut first = vec![NONE; pinned.len()];
@@ -118,47 +137,28 @@ fn winners(mesh: &GhostMesh, pinned: &[bool]) -> Vec<(u32, u32)> {
     (0..pinned.len() as u32).filter(free).map(|v| (v, first[v as usize])).collect()
 }
 
-fn heir(mesh: &GhostMesh, h: u32, pinned: &[bool]) -> u32 {
-    let mut neighbors = star(mesh, h).map(|h| mesh.destination(h)).filter(|&u| u != GHOST);
-    let first = neighbors.next().unwrap_or(NONE);
-    let free = std::iter::once(first).chain(neighbors).find(|&u| pinned.get(u as usize) == Some(&false));
-    free.unwrap_or(first)
+/// Step 2: the half-edge from the origin of `h` to its heir.
+fn start(mesh: &GhostMesh, h: u32, pinned: &[bool]) -> Option<u32> {
+    let rank = |u: u32| (pinned.get(u as usize).copied().unwrap_or(false), u);
+    star(mesh, h).filter(|&h| mesh.destination(h) != GHOST).min_by_key(|&h| rank(mesh.destination(h)))
 }
 
-/// Takes out the origin of `h`.
-fn remove(mesh: &mut GhostMesh, at: &[DVec2], h: u32) -> Result<(), DualizeError> {
-    let v = mesh.origin(h);
-    let (mut degree, mut ghosts, mut to_ghost, mut to_finite) = (0, 0, NONE, NONE);
-    for g in star(mesh, h) {
-        degree += 1;
-        if mesh.destination(g) == GHOST {
-            ghosts += 1;
-            to_ghost = g;
-        } else {
-            to_finite = g;
-        }
-    }
-    match (ghosts, degree) {
-        (0, 3..) => return remove_inner(mesh, at, h, degree),
-        (1, 3..) => contract(mesh, to_ghost),
-        (2, 4) | (1, 2) => contract(mesh, to_finite),
-        _ => return Err(broken(STAGE, v)),
-    }
-    Ok(())
-}
-
-/// Step 2, for a vertex of so many neighbors, none of them the ghost.
-fn remove_inner(mesh: &mut GhostMesh, at: &[DVec2], start: u32, degree: usize) -> Result<(), DualizeError> {
+/// Steps 3 and 4: takes out the origin of `start`; the slots that become free.
+fn remove(mesh: &mut GhostMesh, at: &[DVec2], start: u32) -> Result<[u32; 2], DualizeError> {
     let v = mesh.origin(start);
-    let (mut h, mut left, mut steps) = (start, degree, 0);
-    while left > 3 {
-        if steps == 4 * degree {
-            return Err(broken(STAGE, v));
-        }
-        steps += 1;
+    let mut left = star(mesh, start).count();
+    let to_ghost = star(mesh, start).find(|&h| mesh.destination(h) == GHOST);
+    let mut h = to_ghost.map_or(start, |h| mesh.rotate_ccw(h));
+    let position = |u: u32| at[u as usize];
+    for _ in 0..4 * left {
         let (l, b, a) = (mesh.destination(h), mesh.apex(h), mesh.apex(mesh.twin(h)));
-        let [l, a, b, p] = [l, a, b, v].map(|u| at[u as usize]);
-        if orient2d(a, l, b) == Sign::Positive && orient2d(a, b, p) != Sign::Negative {
+        if to_ghost.is_none() && left == 3 {
+            return Ok(merge(mesh, h));
+        }
+        if b == GHOST {
+            return Ok(to_infinity(mesh, h));
+        }
+        if a != GHOST && is_ear(position(v), [a, l, b].map(position)) {
             // The flip leaves h in the star: it now leads to the neighbor before, one step back.
             mesh.flip(h);
             left -= 1;
@@ -166,45 +166,46 @@ fn remove_inner(mesh: &mut GhostMesh, at: &[DVec2], start: u32, degree: usize) -
             h = mesh.rotate_ccw(h);
         }
     }
-    let out = [h, mesh.rotate_ccw(h), mesh.rotate_cw(h)];
-    let [t, u, w] = out.map(|h| h / 3);
-    let across = out.map(next);
-    let corners = across.map(|g| mesh.origin(g));
-    let twins = across.map(|g| mesh.twin(g));
-    // The new triangle's edge from corner i to corner i + 1 is edge i + 2.
-    mesh.triangles[t as usize] = corners;
-    for (i, &twin) in twins.iter().enumerate() {
-        mesh.link(3 * t + (i as u32 + 2) % 3, twin);
-    }
-    mesh.delete(u as usize);
-    mesh.delete(w as usize);
-    Ok(())
+    Err(broken(STAGE, v))
 }
 
-/// Shrinks the edge `h` to its destination: its two triangles vanish, the other triangles around its origin stay.
+fn is_ear(p: DVec2, [a, l, b]: [DVec2; 3]) -> bool {
+    orient2d(a, l, b) == Sign::Positive && orient2d(a, b, p) != Sign::Negative
+}
+
+/// Merges the three triangles around the origin of `h` into that of `h`, where the third neighbor takes its place.
+fn merge(mesh: &mut GhostMesh, h: u32) -> [u32; 2] {
+    let (ccw, cw) = (mesh.rotate_ccw(h), mesh.rotate_cw(h));
+    let third = mesh.destination(cw);
+    let (beyond_ccw, beyond_cw) = (mesh.twin(next(ccw)), mesh.twin(next(cw)));
+    mesh.triangles[(h / 3) as usize][next(h) as usize % 3] = third;
+    mesh.link(prev(h), beyond_ccw);
+    mesh.link(h, beyond_cw);
+    free(mesh, [ccw / 3, cw / 3])
+}
+
+/// Puts the ghost in the place of the origin of `h`, which leads to the last of its neighbors counterclockwise.
 ///
-/// The other two edges of a vanishing triangle become one. At an end of a chain, that is an end of `h`, the two
-/// triangles share one more edge, which vanishes as well.
-fn contract(mesh: &mut GhostMesh, h: u32) {
-    let (from, to, g) = (mesh.origin(h), mesh.destination(h), mesh.twin(h));
-    for out in star(mesh, h).collect::<Vec<u32>>() {
-        for corner in &mut mesh.triangles[(out / 3) as usize] {
-            if *corner == from {
-                *corner = to;
-            }
-        }
+/// The outer edges of the two ghost triangles that vanish go to the finite triangles beside them.
+fn to_infinity(mesh: &mut GhostMesh, h: u32) -> [u32; 2] {
+    let to_ghost = mesh.rotate_ccw(h);
+    let first = mesh.rotate_ccw(to_ghost);
+    let last = mesh.twin(h);
+    let (beyond_last, beyond_first) = (mesh.twin(next(h)), mesh.twin(next(to_ghost)));
+    let mut spoke = first;
+    while spoke != h {
+        let following = mesh.rotate_ccw(spoke);
+        mesh.triangles[(spoke / 3) as usize][next(spoke) as usize % 3] = GHOST;
+        spoke = following;
     }
-    let beyond = [next(h), prev(h), next(g), prev(g)].map(|side| mesh.twin(side));
-    let (end_at_to, end_at_from) = (beyond[0] == prev(g), beyond[1] == next(g));
-    match (end_at_to, end_at_from) {
-        (false, false) => {
-            mesh.link(beyond[0], beyond[1]);
-            mesh.link(beyond[2], beyond[3]);
-        }
-        (true, false) => mesh.link(beyond[1], beyond[2]),
-        (false, true) => mesh.link(beyond[0], beyond[3]),
-        (true, true) => {}
-    }
-    mesh.delete((h / 3) as usize);
-    mesh.delete((g / 3) as usize);
+    mesh.link(last, beyond_last);
+    mesh.link(first, beyond_first);
+    free(mesh, [h / 3, to_ghost / 3])
+}
+
+fn free(mesh: &mut GhostMesh, slots: [u32; 2]) -> [u32; 2] {
+    slots.map(|t| {
+        mesh.delete(t as usize);
+        t
+    })
 }

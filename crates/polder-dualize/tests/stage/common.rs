@@ -76,7 +76,10 @@ pub(crate) fn phases_with(points: &[DVec2], options: &Options) -> Phases {
     };
     let sites = phases.voronoi.sites.count;
     check_sphere(&phases.dualized.mesh, sites);
-    check_sphere(&phases.shifted.mesh, sites - phases.shifted.taken_out().count());
+    let mut shifted = phases.shifted.mesh.clone();
+    shifted.check().unwrap();
+    shifted.compact();
+    check_sphere(&shifted, sites - phases.shifted.taken_out().count());
     check_sphere(&phases.inserted.mesh, distinct(phases.inserted.vertex_of.clone()));
     phases
 }

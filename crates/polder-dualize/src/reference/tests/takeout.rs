@@ -11,11 +11,19 @@ fn check(mesh: GhostMesh, at: &[DVec2], pinned: &[u32]) -> (GhostMesh, Vec<u32>,
     let mut mesh = mesh;
     let mut flags = vec![false; at.len()];
     pinned.iter().for_each(|&v| flags[v as usize] = true);
+    let slots = mesh.slots();
     let taken = take_out(&mut mesh, at, flags).unwrap();
     mesh.check().unwrap();
     certify(&mesh, at, "test").unwrap();
-    let left = at.len() - pinned.len();
-    assert_eq!(mesh.slots(), if left < 2 { 0 } else { 2 * left - 2 });
+    let mut free: Vec<u32> = taken.freed.iter().flatten().copied().filter(|&t| t != NONE).collect();
+    free.sort_unstable();
+    let deleted: Vec<u32> = (0..mesh.slots() as u32).filter(|&t| mesh.is_deleted(t as usize)).collect();
+    assert_eq!(free, deleted);
+    assert!(mesh.slots() == slots || mesh.slots() == 0);
+    if mesh.slots() > 0 {
+        assert!((0..at.len() as u32).all(|v| (taken.freed[v as usize] != [NONE; 2]) == pinned.contains(&v)));
+        assert_eq!(deleted.len(), 2 * pinned.len());
+    }
     let still_there = mesh.half_edge_of_vertex(at.len());
     for v in 0..at.len() as u32 {
         let heir = taken.heirs[v as usize];
@@ -120,13 +128,15 @@ fn heirs_are_followed_to_vertices_that_are_still_there() {
 }
 
 #[test]
-fn a_triangle_becomes_a_chain_and_a_chain_becomes_empty() {
+fn a_triangle_becomes_a_chain_and_a_chain_with_pinned_vertices_becomes_empty() {
     let at = [DVec2::ZERO, DVec2::X, DVec2::Y];
     let (mesh, heirs, _) = check(delaunay(&at), &at, &[2]);
-    assert_eq!((mesh.finite().count(), mesh.slots()), (0, 2));
-    assert_ne!(heirs[2], 2);
-    check(delaunay(&at), &at, &[0, 2]);
-    check(delaunay(&at), &at, &[0, 1, 2]);
+    assert_eq!((mesh.finite().count(), mesh.slots()), (0, 4));
+    assert_eq!(heirs, [0, 1, 0]);
+    for pinned in [&[0, 2][..], &[0, 1, 2]] {
+        let (mesh, heirs, _) = check(delaunay(&at), &at, pinned);
+        assert_eq!((mesh.slots(), heirs), (0, vec![NONE; 3]));
+    }
     let line: Vec<DVec2> = (0..9).map(|i| DVec2::new(f64::from(i), f64::from(2 * i))).collect();
     for set in 0..1u32 << 9 {
         let pinned: Vec<u32> = (0..9).filter(|v| set >> v & 1 == 1).collect();
