@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::device::{Device, DeviceInner};
 use crate::memory::Allocated;
+use crate::shader::Touch;
 use ash::vk;
 use bytemuck::Pod;
 use gpu_allocator::MemoryLocation;
@@ -138,6 +139,14 @@ impl<T> std::fmt::Debug for View<'_, T> {
     }
 }
 
+impl<'a> View<'a, u32> {
+    /// The words of a part of a buffer.
+    pub(crate) fn of_touch(touch: &'a Touch) -> Self {
+        let len = ((touch.end - touch.start) / 4) as usize;
+        View { buffer: &touch.buffer, start: touch.start, len, of: PhantomData }
+    }
+}
+
 impl<'a, T: Pod> View<'a, T> {
     /// Elements.
     pub fn len(&self) -> usize {
@@ -167,6 +176,11 @@ impl<'a, T: Pod> View<'a, T> {
     pub fn cast<U: Pod>(&self) -> View<'a, U> {
         let len = self.bytes().checked_div(size_of::<U>() as u64).unwrap_or(0) as usize;
         View { buffer: self.buffer, start: self.start, len, of: PhantomData }
+    }
+
+    /// The address of the first byte on the device.
+    pub fn device_address(&self) -> u64 {
+        self.buffer.address + self.start
     }
 
     /// Bytes.

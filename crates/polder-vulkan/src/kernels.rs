@@ -181,6 +181,102 @@ impl Shader for DispatchSize {
     }
 }
 
+/// Fills words with one value: a fill that a dispatch of no workgroups can leave out, as the fill command cannot be.
+#[derive(Debug, Clone, Copy)]
+pub enum FillWords {}
+
+/// Arguments of [`FillWords`].
+#[derive(Debug, Clone, Copy)]
+pub struct FillWordsArgs<'a> {
+    /// written
+    pub to: View<'a, u32>,
+    /// a value
+    pub value: u32,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for FillWords {
+    type Args<'a> = FillWordsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "fill_words",
+        words: include_spirv!("../spv/fill_words.spv"),
+        argument_bytes: 16,
+        buffers: &[BufferArgument { name: "to", offset: 0, access: Access::Write }],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "7d177b28b98d842a9a5baecad5b5cc44db143897a041b0ee993e21062f11f753",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.to);
+        encoder.value(8, args.value);
+        encoder.value(12, args.count);
+    }
+}
+
+/// Behind a loop that was run ahead: where its counter is not zero, what follows shall not run. The sizes of all later
+/// dispatches become zero; sizes that lie in buffers of others are kept, to be put back.
+#[derive(Debug, Clone, Copy)]
+pub enum HaltUnfinished {}
+
+/// Arguments of [`HaltUnfinished`].
+#[derive(Debug, Clone, Copy)]
+pub struct HaltUnfinishedArgs<'a> {
+    /// read
+    pub counter: View<'a, u32>,
+    /// read and written
+    pub halt: View<'a, u32>,
+    /// written
+    pub sizes: View<'a, u32>,
+    /// read
+    pub addresses: View<'a, u64>,
+    /// written
+    pub saved: View<'a, u32>,
+    /// a value
+    pub number: u32,
+    /// a value
+    pub size_count: u32,
+    /// a value
+    pub address_count: u32,
+}
+
+impl Shader for HaltUnfinished {
+    type Args<'a> = HaltUnfinishedArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "halt_unfinished",
+        words: include_spirv!("../spv/halt_unfinished.spv"),
+        argument_bytes: 52,
+        buffers: &[
+            BufferArgument { name: "counter", offset: 0, access: Access::Read },
+            BufferArgument { name: "halt", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "sizes", offset: 16, access: Access::Write },
+            BufferArgument { name: "addresses", offset: 24, access: Access::Read },
+            BufferArgument { name: "saved", offset: 32, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "a1ca10ca95505906c3d2b9ef2a5bb40dab4f30905b388324cbbe88b322d33dd9",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.counter);
+        encoder.buffer(8, args.halt);
+        encoder.buffer(16, args.sizes);
+        encoder.buffer(24, args.addresses);
+        encoder.buffer(32, args.saved);
+        encoder.value(40, args.number);
+        encoder.value(44, args.size_count);
+        encoder.value(48, args.address_count);
+    }
+}
+
 /// Sum, minimum or maximum of u32.
 #[derive(Debug, Clone, Copy)]
 pub enum ReduceU32 {}

@@ -38,6 +38,7 @@
 #[doc = include_str!("../README.md")]
 struct Readme;
 
+mod ahead;
 mod buffer;
 mod cache;
 mod device;
@@ -54,6 +55,7 @@ pub mod primitives;
 mod queries;
 mod recording;
 pub mod reference;
+mod run;
 mod select;
 mod self_test;
 mod shader;

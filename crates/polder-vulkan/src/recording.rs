@@ -10,6 +10,8 @@ use std::sync::Arc;
 
 /// Workgroups of a row of dispatches along x that every device takes.
 const ROW: u64 = 65535;
+/// Words that a workgroup of the kernels fills or copies.
+const WORDS_OF_A_GROUP: u32 = 16 * 256;
 
 /// The workgroups that `items` need where one takes `each`, folded over y. Kernels number them by `group_index()` of
 /// `groups.glsl`; the last ones may lie beyond the end.
@@ -30,16 +32,48 @@ pub struct ReadBack {
 }
 
 pub(crate) enum Step {
-    Dispatch { kernel: Arc<KernelInner>, size: Size, arguments: Vec<u8>, touches: Vec<Touch> },
-    Fill { to: Touch, value: u32 },
-    Copy { from: Touch, to: Touch },
-    Read { from: Touch, to: ReadBack },
-    Repeat { name: &'static str, counter: Touch, read: ReadBack, bound: u32, batch: u32, body: Vec<Step> },
+    Dispatch {
+        kernel: Arc<KernelInner>,
+        size: Size,
+        arguments: Vec<u8>,
+        touches: Vec<Touch>,
+    },
+    /// Fills and copies have a place among the sizes where a kernel can do them.
+    Fill {
+        to: Touch,
+        value: u32,
+        place: Option<u32>,
+    },
+    Copy {
+        from: Touch,
+        to: Touch,
+        place: Option<u32>,
+    },
+    Read {
+        from: Touch,
+        to: ReadBack,
+    },
+    Repeat(Repeat),
 }
 
+/// Sizes known to the host have a place among all of them.
 pub(crate) enum Size {
-    Direct([u32; 3]),
+    Direct([u32; 3], u32),
     Indirect(Touch),
+}
+
+pub(crate) struct Repeat {
+    pub(crate) name: &'static str,
+    pub(crate) counter: Touch,
+    pub(crate) read: ReadBack,
+    pub(crate) bound: u32,
+    /// Rounds before the first look.
+    pub(crate) first: u32,
+    /// Rounds before each later one.
+    pub(crate) batch: u32,
+    /// Whether the first look waits for those behind it.
+    pub(crate) ahead: bool,
+    pub(crate) body: Vec<Step>,
 }
 
 /// A list of work. Commands run as if one after the other; what does not conflict may overlap.
@@ -51,6 +85,11 @@ pub struct Recording {
     pub(crate) steps: Vec<Step>,
     pub(crate) words: u32,
     pub(crate) error: Option<Error>,
+    /// Workgroups of every dispatch that the host knows, and of fills and copies done by kernels.
+    pub(crate) sizes: Vec<[u32; 3]>,
+    /// Where other sizes lie, each once.
+    pub(crate) indirect: Vec<Touch>,
+    nested: bool,
 }
 
 impl std::fmt::Debug for Recording {
@@ -62,7 +101,15 @@ impl std::fmt::Debug for Recording {
 impl Recording {
     /// An empty one.
     pub fn new(device: &Device) -> Self {
-        Recording { device: Arc::clone(&device.inner), steps: Vec::new(), words: 0, error: None }
+        Recording {
+            device: Arc::clone(&device.inner),
+            steps: Vec::new(),
+            words: 0,
+            error: None,
+            sizes: Vec::new(),
+            indirect: Vec::new(),
+            nested: false,
+        }
     }
 
     /// Commands at this level; a repeated body counts as one.
@@ -84,7 +131,8 @@ impl Recording {
         if (0..3).any(|axis| groups[axis] > most[axis]) {
             return self.fail(kernel.inner.name, format!("{groups:?} workgroups; the device has up to {most:?}"));
         }
-        self.push_dispatch(kernel, Size::Direct(groups), arguments);
+        let place = self.place(groups);
+        self.push_dispatch(kernel, Size::Direct(groups, place), arguments);
     }
 
     /// Runs a kernel in as many workgroups as the first three words of `groups` say when it is its turn. The kernel
@@ -96,7 +144,22 @@ impl Recording {
         let mut touch = Touch::of(groups, false);
         touch.end = touch.start + 12;
         self.owns(kernel.inner.name, &touch.buffer);
+        if !self.indirect.iter().any(|known| known.buffer.id == touch.buffer.id && known.start == touch.start) {
+            self.indirect.push(touch.clone());
+        }
         self.push_dispatch(kernel, Size::Indirect(touch), arguments);
+    }
+
+    fn place(&mut self, groups: [u32; 3]) -> u32 {
+        self.sizes.push(groups);
+        self.sizes.len() as u32 - 1
+    }
+
+    /// The place of a kernel's size that does so many bytes, if one can.
+    fn place_of_words(&mut self, bytes: u64) -> Option<u32> {
+        let words = bytes / 4;
+        let possible = bytes.is_multiple_of(4) && u32::try_from(words).is_ok();
+        possible.then(|| self.place(groups_for(words as usize, WORDS_OF_A_GROUP)))
     }
 
     fn push_dispatch<S: Shader>(&mut self, kernel: &Kernel<S>, size: Size, arguments: &S::Args<'_>) {
@@ -118,7 +181,8 @@ impl Recording {
             return;
         }
         self.owns("fill", &to.buffer.clone());
-        self.steps.push(Step::Fill { to: Touch::of(to, true), value });
+        let place = self.place_of_words(to.bytes());
+        self.steps.push(Step::Fill { to: Touch::of(to, true), value, place });
     }
 
     /// Copies all elements to the first of `to`, which may not overlap them. By the driver's command, which can be much
@@ -139,7 +203,8 @@ impl Recording {
         self.owns("copy", to.buffer);
         let mut target = Touch::of(to, true);
         target.end = target.start + bytes;
-        self.steps.push(Step::Copy { from: Touch::of(from, false), to: target });
+        let place = self.place_of_words(bytes);
+        self.steps.push(Step::Copy { from: Touch::of(from, false), to: target, place });
     }
 
     /// Brings words back with the report. Meant for counts: long arrays come by
@@ -175,6 +240,39 @@ impl Recording {
         batch: u32,
         body: impl FnOnce(&mut Recording),
     ) {
+        self.loops(name, counter, bound, [batch, batch], false, body);
+    }
+
+    /// As [`Recording::repeat`], but the host does not look after the first `first` rounds: it goes on as if the loop were
+    /// done, and looks at all such loops at once, at the end of the recording or at the next plain `repeat`. Where one
+    /// was not done, nothing behind it has run: the device itself leaves it out. The host then runs that loop on, and what
+    /// follows, in the same way: by `batch` rounds, twice as many after the next look, up to 64 times. So a good guess
+    /// costs no wait, and a bad one hardly more than the plain loop.
+    ///
+    /// Dispatches behind such a loop take their sizes from memory, fills and copies become kernels; that is nearly free.
+    /// Within a repeated body, or where the body repeats something itself, it is a plain loop whose first batch has
+    /// `first` rounds.
+    pub fn repeat_ahead(
+        &mut self,
+        name: &'static str,
+        counter: View<'_, u32>,
+        bound: u32,
+        first: u32,
+        batch: u32,
+        body: impl FnOnce(&mut Recording),
+    ) {
+        self.loops(name, counter, bound, [first, batch], true, body);
+    }
+
+    fn loops(
+        &mut self,
+        name: &'static str,
+        counter: View<'_, u32>,
+        bound: u32,
+        [first, batch]: [u32; 2],
+        ahead: bool,
+        body: impl FnOnce(&mut Recording),
+    ) {
         if counter.is_empty() {
             return self.fail(name, "the counter is empty".to_owned());
         }
@@ -182,15 +280,26 @@ impl Recording {
         let mut touch = Touch::of(counter, false);
         touch.end = touch.start + 4;
         let read = self.room(1);
-        let mut inner =
-            Recording { device: Arc::clone(&self.device), steps: Vec::new(), words: self.words, error: None };
+        let mut inner = Recording {
+            device: Arc::clone(&self.device),
+            steps: Vec::new(),
+            words: self.words,
+            error: None,
+            sizes: std::mem::take(&mut self.sizes),
+            indirect: std::mem::take(&mut self.indirect),
+            nested: true,
+        };
         body(&mut inner);
         self.words = inner.words;
+        self.sizes = inner.sizes;
+        self.indirect = inner.indirect;
         if let Some(error) = inner.error {
             self.error.get_or_insert(error);
         }
         let body = inner.steps;
-        self.steps.push(Step::Repeat { name, counter: touch, read, bound, batch: batch.max(1), body });
+        let ahead = ahead && !self.nested && !body.iter().any(|step| matches!(step, Step::Repeat(_)));
+        let (first, batch) = (first.max(1), batch.max(1));
+        self.steps.push(Step::Repeat(Repeat { name, counter: touch, read, bound, first, batch, ahead, body }));
     }
 
     fn owns(&mut self, command: &'static str, buffer: &Arc<BufferInner>) {
@@ -216,9 +325,9 @@ pub(crate) fn held(steps: &[Step], buffers: &mut Vec<Arc<BufferInner>>, kernels:
                 }
             }
             Step::Fill { to, .. } => buffers.push(Arc::clone(&to.buffer)),
-            Step::Copy { from, to } => buffers.extend([Arc::clone(&from.buffer), Arc::clone(&to.buffer)]),
+            Step::Copy { from, to, .. } => buffers.extend([Arc::clone(&from.buffer), Arc::clone(&to.buffer)]),
             Step::Read { from, .. } => buffers.push(Arc::clone(&from.buffer)),
-            Step::Repeat { counter, body, .. } => {
+            Step::Repeat(Repeat { counter, body, .. }) => {
                 buffers.push(Arc::clone(&counter.buffer));
                 held(body, buffers, kernels);
             }

@@ -121,7 +121,7 @@ impl<'e, 'a> Encoder<'e, 'a> {
 
     /// A buffer.
     pub fn buffer<T: Pod>(&mut self, offset: usize, view: View<'a, T>) {
-        self.value(offset, view.buffer.address + view.start);
+        self.value(offset, view.device_address());
         let argument = self.buffers.iter().find(|argument| argument.offset as usize == offset);
         let access = argument.map_or(Access::ReadWrite, |argument| argument.access);
         self.touches.push(Touch::of(view, access != Access::Read));

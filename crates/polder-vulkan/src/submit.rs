@@ -2,6 +2,7 @@
 //! use while the device may still work on them.
 
 use crate::Error;
+use crate::ahead::Ahead;
 use crate::buffer::BufferInner;
 use crate::device::{Device, DeviceInner};
 use crate::error::Called;
@@ -39,6 +40,8 @@ pub(crate) struct Used {
     pub(crate) staging: Vec<Allocated>,
     #[expect(dead_code, reason = "held, not read")]
     pub(crate) queries: Option<Queries>,
+    #[expect(dead_code, reason = "held, not read")]
+    pub(crate) ahead: Option<Ahead>,
 }
 
 pub(crate) struct Submitter {

@@ -6,8 +6,9 @@
 
 use crate::Error;
 use crate::buffer::View;
-use crate::engine::{Engine, host_reads};
+use crate::engine::Engine;
 use crate::memory::Allocated;
+use crate::run::host_reads;
 use crate::submit::{Slot, Used};
 use ash::vk;
 use bytemuck::Pod;

@@ -87,6 +87,29 @@ pub fn copy_words(from: &[u32], to: &mut [u32]) {
     to[..from.len()].copy_from_slice(from);
 }
 
+/// The value.
+pub fn fill_words(to: &mut [u32], value: u32) {
+    to.fill(value);
+}
+
+/// Where `counter` is not zero and nothing has halted yet: notes the loop's number, makes all sizes zero, and keeps what
+/// those elsewhere were.
+pub fn halt_unfinished(
+    counter: u32,
+    number: u32,
+    halt: &mut u32,
+    sizes: &mut [[u32; 4]],
+    elsewhere: &mut [[u32; 3]],
+    saved: &mut [[u32; 3]],
+) {
+    if counter != 0 && *halt == 0 {
+        *halt = number;
+        sizes.fill([0; 4]);
+        saved.copy_from_slice(elsewhere);
+        elsewhere.fill([0; 3]);
+    }
+}
+
 /// Workgroups for `count` items, at most `limit`, of which one takes `items`.
 pub fn dispatch_size(count: u32, limit: u32, items: u32) -> [u32; 3] {
     let [x, y, z] = crate::groups_for(count.min(limit) as usize, items);
