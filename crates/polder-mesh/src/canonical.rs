@@ -183,6 +183,39 @@ fn sort_part(entries: &[Entry], first: usize, vertices: usize) -> Vec<u32> {
     order
 }
 
+/// Checks that arrays are in canonical order; see [`Triangulation::from_canonical`](crate::Triangulation::from_canonical).
+pub(crate) fn check(
+    points: usize,
+    triangles: &[[u32; 3]],
+    neighbors: &[[u32; 3]],
+    constrained: &[u8],
+) -> Result<(), MeshError> {
+    let count = triangles.len();
+    if neighbors.len() != count || constrained.len() != count {
+        let triangle = count.min(neighbors.len()).min(constrained.len());
+        return Err(MeshError::Broken { triangle, what: "the arrays of the mesh differ in length" });
+    }
+    let fault = |t: usize| {
+        let [a, b, c] = triangles[t];
+        if a as usize >= points || b as usize >= points || c as usize >= points {
+            return Some("a corner that is no point");
+        }
+        if a >= b || a >= c {
+            return Some("a first corner that is not the smallest");
+        }
+        if t > 0 && triangles[t - 1] >= triangles[t] {
+            return Some("a triangle out of order");
+        }
+        let exists = |n: &u32| *n == NONE || (*n as usize) < count;
+        (!neighbors[t].iter().all(exists)).then_some("a neighbor that does not exist")
+    };
+    let first = (0..count).into_par_iter().with_min_len(PIECE).find_first(|&t| fault(t).is_some());
+    match first.and_then(|triangle| Some((triangle, fault(triangle)?))) {
+        Some((triangle, what)) => Err(MeshError::Broken { triangle, what }),
+        None => Ok(()),
+    }
+}
+
 /// The triangle on the other side of each edge, found by sorting the edges.
 pub(crate) fn neighbors_of(points: usize, triangles: &[[u32; 3]]) -> Result<Vec<[u32; 3]>, MeshError> {
     let mut edges = Vec::with_capacity(3 * triangles.len());

@@ -79,6 +79,24 @@ impl Triangulation {
         Self::from_slots(mesh.slots(), get, parts)
     }
 
+    /// A triangulation whose arrays are in canonical order already.
+    ///
+    /// # Errors
+    ///
+    /// [`MeshError::Broken`] if the arrays differ in length, a corner is not below the number of representatives, a triangle
+    /// does not start at its smallest corner, is not greater than the one before it, or has a neighbor that does not exist.
+    /// Nothing else is checked.
+    pub fn from_canonical(
+        triangles: Vec<[u32; 3]>,
+        neighbors: Vec<[u32; 3]>,
+        constrained: Vec<u8>,
+        parts: Parts,
+    ) -> Result<Self, MeshError> {
+        canonical::check(parts.representatives.len(), &triangles, &neighbors, &constrained)?;
+        let Parts { representatives, chains } = parts;
+        Ok(Self { triangles, neighbors, constrained, representatives, chains, half_edges: OnceLock::new() })
+    }
+
     /// A triangulation from bare triangles, as a mesh file gives them: neighbors are found by sorting edges.
     ///
     /// # Errors

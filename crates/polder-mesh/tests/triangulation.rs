@@ -35,6 +35,37 @@ fn triangles_start_at_their_smallest_corner_and_are_sorted() {
 }
 
 #[test]
+fn what_is_in_canonical_order_already_is_taken_as_it_is() {
+    let parts = || Parts { representatives: (0..4).collect(), chains: Chains::default() };
+    let make = |triangles: &[[u32; 3]], neighbors: &[[u32; 3]], constrained: &[u8]| {
+        Triangulation::from_canonical(triangles.to_vec(), neighbors.to_vec(), constrained.to_vec(), parts())
+    };
+    let (triangles, neighbors) = ([[0, 3, 1], [1, 3, 2]], [[1, NONE, NONE], [NONE, NONE, 0]]);
+    let mesh = make(&triangles, &neighbors, &[1, 4]).unwrap();
+    assert_eq!(
+        (mesh.triangles(), mesh.neighbors(), mesh.constrained_bits()),
+        (&triangles[..], &neighbors[..], &[1, 4][..])
+    );
+    assert!(make(&[], &[], &[]).is_ok());
+
+    let fault = |triangles: &[[u32; 3]], neighbors: &[[u32; 3]], constrained: &[u8]| match make(
+        triangles,
+        neighbors,
+        constrained,
+    ) {
+        Err(MeshError::Broken { triangle, .. }) => triangle,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(fault(&triangles, &neighbors[..1], &[0, 0]), 1);
+    assert_eq!(fault(&triangles, &neighbors, &[0]), 1);
+    assert_eq!(fault(&[[0, 4, 1], [1, 3, 2]], &neighbors, &[0, 0]), 0);
+    assert_eq!(fault(&[[0, 3, 1], [3, 2, 1]], &neighbors, &[0, 0]), 1);
+    assert_eq!(fault(&[[0, 3, 1], [0, 3, 1]], &neighbors, &[0, 0]), 1);
+    assert_eq!(fault(&[[0, 3, 1], [0, 1, 3]], &neighbors, &[0, 0]), 1);
+    assert_eq!(fault(&triangles, &[[1, NONE, 2], [NONE, NONE, 0]], &[0, 0]), 0);
+}
+
+#[test]
 fn the_digest_is_the_documented_hash() {
     // printf 'polder mesh v1\n\0' followed by the count and the corners, through sha256sum.
     let empty = Triangulation::from_triangles(0, &[]).unwrap();

@@ -13,6 +13,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
     // Dualizing takes the digital Voronoi diagram, whose type is stage 1's.
     ("polder-dualize", &["polder-mesh", "polder-predicates", "polder-vulkan", "polder-flip", "polder-voronoi"]),
     ("polder-flip", &["polder-mesh", "polder-predicates", "polder-vulkan"]),
+    ("polder-canonical", &["polder-mesh", "polder-predicates", "polder-vulkan", "polder-flip"]),
     ("polder-constrain", &["polder-mesh", "polder-predicates", "polder-vulkan", "polder-flip"]),
     // The CPU backend is no stage: it stands beside them.
     ("polder-cpu", &["polder-mesh", "polder-predicates"]),
@@ -27,6 +28,7 @@ const ALLOWED: &[(&str, &[&str])] = &[
             "polder-dualize",
             "polder-flip",
             "polder-constrain",
+            "polder-canonical",
             "polder-cpu",
         ],
     ),

@@ -32,7 +32,7 @@ const TOP_LEVEL: &[&str] = &[
 const LINES: [usize; 2] = [500, 600];
 
 /// Crates that people use alone, each with an example of that.
-const STAGES: [&str; 4] = ["polder-voronoi", "polder-dualize", "polder-flip", "polder-constrain"];
+const STAGES: [&str; 5] = ["polder-voronoi", "polder-dualize", "polder-flip", "polder-constrain", "polder-canonical"];
 
 pub(super) fn top_level(tree: &Tree) -> Vec<Finding> {
     let present: BTreeSet<_> = tree.files().filter_map(|(path, _)| path.split('/').next()).collect();
@@ -135,7 +135,7 @@ mod tests {
             ("crates/polder-io/README.md", ""),
         ]);
         assert_eq!(paths(readmes(&tree)), ["crates/polder-flip/README.md"]);
-        let others = ["polder-voronoi", "polder-dualize", "polder-constrain"];
+        let others = ["polder-voronoi", "polder-dualize", "polder-constrain", "polder-canonical"];
         assert_eq!(paths(examples(&tree)), others.map(|name| format!("crates/{name}/examples/alone.rs")));
     }
 

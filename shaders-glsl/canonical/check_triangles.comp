@@ -1,0 +1,80 @@
+// The certificate's look at each triangle: links that do not lead back, finite triangles that are not counterclockwise, ghost
+// triangles where the hull turns right or folds back: the lowest slot of each; and the lowest corners of the hull, counted.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "items.glsl"
+#include "predicates.glsl"
+
+layout(push_constant, std430) uniform Args {
+    ReadU32 triangles;
+    ReadU32 links;
+    ReadPoints positions;
+    U32 minima;
+    U32 broken;
+    U32 clockwise;
+    U32 reflex;
+    ReadU32 finite; // how many finite triangles there are
+    MaybeReadU32 items; // slots to look at; all of them if left out
+    MaybeReadU32 counter;
+    uint limit;
+    ReadU32 slot_count;
+    WriteU32 deferred;
+    U32 deferred_count;
+    uint vertices;
+};
+
+bool leads_back(uint h) {
+    uint g = twin(links, h);
+    return g / 3u < min(slot_count.at[0], limit) && links.at[g] == (h | (links.at[h] & CONSTRAINED))
+        && origin(triangles, h) == destination(triangles, g) && destination(triangles, h) == origin(triangles, g);
+}
+
+void main() {
+    uint i = item_index();
+    if (i >= length_of(counter, limit)) {
+        return;
+    }
+    uint t = present(items) ? items.at[i] : i;
+    if (is_deleted(triangles, t)) {
+        return;
+    }
+    if (!leads_back(3u * t) || !leads_back(3u * t + 1u) || !leads_back(3u * t + 2u)) {
+        atomicMin(broken.at[0], t);
+        return;
+    }
+    uvec3 v = corners(triangles, t);
+    bool ghost = any(equal(v, uvec3(GHOST)));
+    if (ghost) {
+        // The hull runs from v.x to v.y along h, and on to v.z.
+        uint h = 3u * t + (v.x == GHOST ? 0u : v.y == GHOST ? 1u : 2u);
+        uint following = prev_edge(twin(links, prev_edge(h)));
+        v = uvec3(destination(triangles, h), origin(triangles, h), origin(triangles, following));
+    }
+    if (any(greaterThanEqual(v, uvec3(vertices)))) {
+        atomicMin(broken.at[0], t);
+        return;
+    }
+    Point p = point_at(positions, v.x);
+    Point q = point_at(positions, v.y);
+    Point r = point_at(positions, v.z);
+    int turn = v.x == v.z ? 0 : orient2d(p, q, r);
+    if (turn == UNDECIDED) {
+        deferred.at[atomicAdd(deferred_count.at[0], 1u)] = t;
+        return;
+    }
+    if (!ghost) {
+        if (turn <= 0) {
+            atomicMin(clockwise.at[0], t);
+        }
+        return;
+    }
+    int before = compare_points(p, q);
+    int after = compare_points(q, r);
+    if (before > 0 && after < 0) {
+        atomicAdd(minima.at[0], 1u);
+    }
+    bool folds = turn == 0 && (before < 0) != (after < 0);
+    if (turn < 0 || (folds && (finite.at[0] != 0u || v.x != v.z))) {
+        atomicMin(reflex.at[0], t);
+    }
+}

@@ -1,0 +1,43 @@
+// The canonical place of each triangle: behind those that begin at lower vertices, and behind those of its own list with a
+// lower second corner, which no two share. Lists too long for comparing all with all are left to `sort_long`.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "items.glsl"
+
+layout(push_constant, std430) uniform Args {
+    ReadU32 triangles;
+    ReadU32 names;
+    ReadU32 starts;
+    ReadU32 named_starts;
+    ReadU32 list;
+    ReadU32 keys;
+    WriteU32 places;
+    WriteU32 long_lists;
+    U32 long_count;
+    MaybeReadU32 counter; // of triangles
+    uint limit;
+    uint longest;
+};
+
+void main() {
+    uint p = item_index();
+    if (p >= length_of(counter, limit)) {
+        return;
+    }
+    uint h = list.at[p];
+    uint v = apex(triangles, h);
+    uint from = starts.at[v];
+    uint to = starts.at[v + 1u];
+    if (to - from > longest) {
+        if (p == from) {
+            long_lists.at[atomicAdd(long_count.at[0], 1u)] = v;
+        }
+        return;
+    }
+    uint key = keys.at[p];
+    uint rank = 0u;
+    for (uint q = from; q < to; q++) {
+        rank += uint(keys.at[q] < key);
+    }
+    places.at[h / 3u] = named_starts.at[names.at[v]] + rank;
+}
