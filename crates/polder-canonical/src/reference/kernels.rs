@@ -152,11 +152,9 @@ pub fn write_triangles(
         let corners = [k, (k + 1) % 3, (k + 2) % 3].map(|k| names[mesh.triangles[t][k] as usize]);
         debug_assert_eq!(corners[1], key);
         triangles[place] = corners;
-        for j in 0..3 {
-            let edge = 3 * t as u32 + ((k + j) % 3) as u32;
-            neighbors[place][j] = places[mesh.twin(edge) as usize / 3];
-            constrained[place] |= u8::from(mesh.is_constrained(edge)) << j;
-        }
+        let edges = [k, (k + 1) % 3, (k + 2) % 3].map(|k| (3 * t + k) as u32);
+        neighbors[place] = edges.map(|edge| places[mesh.twin(edge) as usize / 3]);
+        constrained[place] = (0..3).map(|j| u8::from(mesh.is_constrained(edges[j])) << j).sum();
     }
     (triangles, neighbors, constrained)
 }
