@@ -48,6 +48,7 @@ impl Shader for CheckTriangles {
     const CODE: Code = Code {
         name: "check_triangles",
         words: include_spirv!("../spv/check_triangles.spv"),
+        without_float64: Some(include_spirv!("../spv/check_triangles.integers.spv")),
         argument_bytes: 116,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
@@ -125,6 +126,7 @@ impl Shader for CountTriangles {
     const CODE: Code = Code {
         name: "count_triangles",
         words: include_spirv!("../spv/count_triangles.spv"),
+        without_float64: None,
         argument_bytes: 56,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
@@ -176,6 +178,7 @@ impl Shader for ElectNames {
     const CODE: Code = Code {
         name: "elect_names",
         words: include_spirv!("../spv/elect_names.spv"),
+        without_float64: None,
         argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "vertex_of", offset: 0, access: Access::Read },
@@ -228,6 +231,7 @@ impl Shader for ListTriangles {
     const CODE: Code = Code {
         name: "list_triangles",
         words: include_spirv!("../spv/list_triangles.spv"),
+        without_float64: None,
         argument_bytes: 60,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
@@ -284,6 +288,7 @@ impl Shader for NamePoints {
     const CODE: Code = Code {
         name: "name_points",
         words: include_spirv!("../spv/name_points.spv"),
+        without_float64: None,
         argument_bytes: 44,
         buffers: &[
             BufferArgument { name: "vertex_of", offset: 0, access: Access::Read },
@@ -349,6 +354,7 @@ impl Shader for PlaceTriangles {
     const CODE: Code = Code {
         name: "place_triangles",
         words: include_spirv!("../spv/place_triangles.spv"),
+        without_float64: None,
         argument_bytes: 88,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
@@ -425,6 +431,7 @@ impl Shader for SortLong {
     const CODE: Code = Code {
         name: "sort_long",
         words: include_spirv!("../spv/sort_long.spv"),
+        without_float64: None,
         argument_bytes: 84,
         buffers: &[
             BufferArgument { name: "long_lists", offset: 0, access: Access::Read },
@@ -483,6 +490,7 @@ impl Shader for SpreadCounts {
     const CODE: Code = Code {
         name: "spread_counts",
         words: include_spirv!("../spv/spread_counts.spv"),
+        without_float64: None,
         argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "starts", offset: 0, access: Access::Read },
@@ -527,6 +535,7 @@ impl Shader for StartNames {
     const CODE: Code = Code {
         name: "start_names",
         words: include_spirv!("../spv/start_names.spv"),
+        without_float64: None,
         argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "order", offset: 0, access: Access::Read },
@@ -590,6 +599,7 @@ impl Shader for WriteTriangles {
     const CODE: Code = Code {
         name: "write_triangles",
         words: include_spirv!("../spv/write_triangles.spv"),
+        without_float64: None,
         argument_bytes: 100,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },

@@ -29,6 +29,7 @@ impl Shader for DualizeCheck {
     const CODE: Code = Code {
         name: "dualize_check",
         words: include_spirv!("../spv/dualize_check.spv"),
+        without_float64: None,
         argument_bytes: 44,
         buffers: &[
             BufferArgument { name: "sites", offset: 0, access: Access::Read },
@@ -91,6 +92,7 @@ impl Shader for DualizeCount {
     const CODE: Code = Code {
         name: "dualize_count",
         words: include_spirv!("../spv/dualize_count.spv"),
+        without_float64: None,
         argument_bytes: 72,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::Read },
@@ -170,6 +172,7 @@ impl Shader for DualizeWrite {
     const CODE: Code = Code {
         name: "dualize_write",
         words: include_spirv!("../spv/dualize_write.spv"),
+        without_float64: None,
         argument_bytes: 80,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::Read },

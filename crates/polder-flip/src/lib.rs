@@ -15,6 +15,7 @@
 
 mod error;
 pub mod gpu;
+pub mod kernels;
 mod priority;
 pub mod reference;
 

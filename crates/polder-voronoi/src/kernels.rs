@@ -28,6 +28,7 @@ impl Shader for AdvanceRound {
     const CODE: Code = Code {
         name: "advance_round",
         words: include_spirv!("../spv/advance_round.spv"),
+        without_float64: None,
         argument_bytes: 36,
         buffers: &[
             BufferArgument { name: "counter", offset: 0, access: Access::Read },
@@ -72,6 +73,7 @@ impl Shader for BoundPartials {
     const CODE: Code = Code {
         name: "bound_partials",
         words: include_spirv!("../spv/bound_partials.spv"),
+        without_float64: None,
         argument_bytes: 20,
         buffers: &[
             BufferArgument { name: "partial", offset: 0, access: Access::Read },
@@ -112,6 +114,7 @@ impl Shader for BoundPoints {
     const CODE: Code = Code {
         name: "bound_points",
         words: include_spirv!("../spv/bound_points.spv"),
+        without_float64: None,
         argument_bytes: 20,
         buffers: &[
             BufferArgument { name: "points", offset: 0, access: Access::Read },
@@ -166,6 +169,7 @@ impl Shader for CheckDebris {
     const CODE: Code = Code {
         name: "check_debris",
         words: include_spirv!("../spv/check_debris.spv"),
+        without_float64: None,
         argument_bytes: 72,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::Read },
@@ -231,6 +235,7 @@ impl Shader for ColorPixels {
     const CODE: Code = Code {
         name: "color_pixels",
         words: include_spirv!("../spv/color_pixels.spv"),
+        without_float64: None,
         argument_bytes: 60,
         buffers: &[
             BufferArgument { name: "grid", offset: 0, access: Access::Read },
@@ -285,6 +290,7 @@ impl Shader for ColumnEnds {
     const CODE: Code = Code {
         name: "column_ends",
         words: include_spirv!("../spv/column_ends.spv"),
+        without_float64: None,
         argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "grid", offset: 0, access: Access::Read },
@@ -334,6 +340,7 @@ impl Shader for ColumnFill {
     const CODE: Code = Code {
         name: "column_fill",
         words: include_spirv!("../spv/column_fill.spv"),
+        without_float64: None,
         argument_bytes: 36,
         buffers: &[
             BufferArgument { name: "grid", offset: 0, access: Access::Read },
@@ -391,6 +398,7 @@ impl Shader for DropDebris {
     const CODE: Code = Code {
         name: "drop_debris",
         words: include_spirv!("../spv/drop_debris.spv"),
+        without_float64: None,
         argument_bytes: 64,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::ReadWrite },
@@ -448,6 +456,7 @@ impl Shader for ElectSites {
     const CODE: Code = Code {
         name: "elect_sites",
         words: include_spirv!("../spv/elect_sites.spv"),
+        without_float64: None,
         argument_bytes: 40,
         buffers: &[
             BufferArgument { name: "pixels", offset: 0, access: Access::Read },
@@ -502,6 +511,7 @@ impl Shader for FindColor {
     const CODE: Code = Code {
         name: "find_color",
         words: include_spirv!("../spv/find_color.spv"),
+        without_float64: None,
         argument_bytes: 48,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::Read },
@@ -563,6 +573,7 @@ impl Shader for MapPoints {
     const CODE: Code = Code {
         name: "map_points",
         words: include_spirv!("../spv/map_points.spv"),
+        without_float64: None,
         argument_bytes: 60,
         buffers: &[
             BufferArgument { name: "points", offset: 0, access: Access::Read },
@@ -622,6 +633,7 @@ impl Shader for MarkDebris {
     const CODE: Code = Code {
         name: "mark_debris",
         words: include_spirv!("../spv/mark_debris.spv"),
+        without_float64: None,
         argument_bytes: 56,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::Read },
@@ -677,6 +689,7 @@ impl Shader for MissingKeys {
     const CODE: Code = Code {
         name: "missing_keys",
         words: include_spirv!("../spv/missing_keys.spv"),
+        without_float64: None,
         argument_bytes: 40,
         buffers: &[
             BufferArgument { name: "pixels", offset: 0, access: Access::Read },
@@ -730,6 +743,7 @@ impl Shader for NumberMissing {
     const CODE: Code = Code {
         name: "number_missing",
         words: include_spirv!("../spv/number_missing.spv"),
+        without_float64: None,
         argument_bytes: 52,
         buffers: &[
             BufferArgument { name: "pixels", offset: 0, access: Access::Read },
@@ -786,6 +800,7 @@ impl Shader for NumberSites {
     const CODE: Code = Code {
         name: "number_sites",
         words: include_spirv!("../spv/number_sites.spv"),
+        without_float64: None,
         argument_bytes: 48,
         buffers: &[
             BufferArgument { name: "pixels", offset: 0, access: Access::Read },
@@ -837,6 +852,7 @@ impl Shader for PlaceSites {
     const CODE: Code = Code {
         name: "place_sites",
         words: include_spirv!("../spv/place_sites.spv"),
+        without_float64: None,
         argument_bytes: 32,
         buffers: &[
             BufferArgument { name: "sites", offset: 0, access: Access::Read },
@@ -890,6 +906,7 @@ impl Shader for RowMerge {
     const CODE: Code = Code {
         name: "row_merge",
         words: include_spirv!("../spv/row_merge.spv"),
+        without_float64: None,
         argument_bytes: 44,
         buffers: &[
             BufferArgument { name: "nearest", offset: 0, access: Access::Read },
@@ -944,6 +961,7 @@ impl Shader for RowStacks {
     const CODE: Code = Code {
         name: "row_stacks",
         words: include_spirv!("../spv/row_stacks.spv"),
+        without_float64: None,
         argument_bytes: 36,
         buffers: &[
             BufferArgument { name: "nearest", offset: 0, access: Access::Read },
@@ -999,6 +1017,7 @@ impl Shader for TakeColor {
     const CODE: Code = Code {
         name: "take_color",
         words: include_spirv!("../spv/take_color.spv"),
+        without_float64: None,
         argument_bytes: 56,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::ReadWrite },

@@ -105,9 +105,21 @@ impl<S> std::fmt::Debug for Kernel<S> {
 impl<S: Shader> Kernel<S> {
     /// Compiles once a device; again with the same constants it costs a look into a table. `constants` sets
     /// specialization constants by name; the others keep their defaults. Fails where the device lacks a feature or the
-    /// workgroup passes its limits.
+    /// workgroup passes its limits. A device without f64 gets the shader's code without f64, if there is any.
     pub fn new(device: &Device, constants: &[(&'static str, u32)]) -> Result<Self, Error> {
-        let code = &S::CODE;
+        if device.has(Feature::ShaderFloat64) {
+            Self::of_code(device, &S::CODE, constants)
+        } else {
+            Self::without_float64(device, constants)
+        }
+    }
+
+    /// The same, from the code without f64 on any device, if there is any.
+    pub fn without_float64(device: &Device, constants: &[(&'static str, u32)]) -> Result<Self, Error> {
+        Self::of_code(device, &S::CODE.less_float64(), constants)
+    }
+
+    fn of_code(device: &Device, code: &Code, constants: &[(&'static str, u32)]) -> Result<Self, Error> {
         let values = specialize(code, constants)?;
         let workgroup = code.workgroup.map(|side| match side {
             Side::Fixed(count) => count,
@@ -145,7 +157,8 @@ fn refused(code: &Code, why: String) -> Error {
 fn check(device: &Device, code: &Code, workgroup: [u32; 3]) -> Result<(), Error> {
     let info = device.info();
     for feature in code.capabilities.iter().filter_map(|capability| Feature::of_capability(capability)) {
-        if !device.has(feature) {
+        let done_without = feature == Feature::ShaderFloat64 && code.is_less_float64();
+        if !done_without && !device.has(feature) {
             let missing = format!("{feature}, which kernel `{}` needs", code.name);
             return Err(Error::Unsupported { device: info.name.clone(), missing });
         }

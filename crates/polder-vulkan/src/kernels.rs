@@ -25,6 +25,7 @@ impl Shader for CompactCount {
     const CODE: Code = Code {
         name: "compact_count",
         words: include_spirv!("../spv/compact_count.spv"),
+        without_float64: None,
         argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "words", offset: 0, access: Access::Read },
@@ -73,6 +74,7 @@ impl Shader for CompactWrite {
     const CODE: Code = Code {
         name: "compact_write",
         words: include_spirv!("../spv/compact_write.spv"),
+        without_float64: None,
         argument_bytes: 44,
         buffers: &[
             BufferArgument { name: "flags", offset: 0, access: Access::Read },
@@ -119,6 +121,7 @@ impl Shader for CopyWords {
     const CODE: Code = Code {
         name: "copy_words",
         words: include_spirv!("../spv/copy_words.spv"),
+        without_float64: None,
         argument_bytes: 20,
         buffers: &[
             BufferArgument { name: "from", offset: 0, access: Access::Read },
@@ -161,6 +164,7 @@ impl Shader for DispatchSize {
     const CODE: Code = Code {
         name: "dispatch_size",
         words: include_spirv!("../spv/dispatch_size.spv"),
+        without_float64: None,
         argument_bytes: 24,
         buffers: &[
             BufferArgument { name: "counter", offset: 0, access: Access::Read },
@@ -202,6 +206,7 @@ impl Shader for FillWords {
     const CODE: Code = Code {
         name: "fill_words",
         words: include_spirv!("../spv/fill_words.spv"),
+        without_float64: None,
         argument_bytes: 16,
         buffers: &[BufferArgument { name: "to", offset: 0, access: Access::Write }],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
@@ -250,6 +255,7 @@ impl Shader for HaltUnfinished {
     const CODE: Code = Code {
         name: "halt_unfinished",
         words: include_spirv!("../spv/halt_unfinished.spv"),
+        without_float64: None,
         argument_bytes: 52,
         buffers: &[
             BufferArgument { name: "counter", offset: 0, access: Access::Read },
@@ -300,6 +306,7 @@ impl Shader for ReduceU32 {
     const CODE: Code = Code {
         name: "reduce_u32",
         words: include_spirv!("../spv/reduce_u32.spv"),
+        without_float64: None,
         argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "values", offset: 0, access: Access::Read },
@@ -347,6 +354,7 @@ impl Shader for ReduceU64 {
     const CODE: Code = Code {
         name: "reduce_u64",
         words: include_spirv!("../spv/reduce_u64.spv"),
+        without_float64: None,
         argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "values", offset: 0, access: Access::Read },
@@ -394,6 +402,7 @@ impl Shader for ScanReduce {
     const CODE: Code = Code {
         name: "scan_reduce",
         words: include_spirv!("../spv/scan_reduce.spv"),
+        without_float64: None,
         argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "words", offset: 0, access: Access::Read },
@@ -440,6 +449,7 @@ impl Shader for ScanSums {
     const CODE: Code = Code {
         name: "scan_sums",
         words: include_spirv!("../spv/scan_sums.spv"),
+        without_float64: None,
         argument_bytes: 32,
         buffers: &[
             BufferArgument { name: "sums", offset: 0, access: Access::ReadWrite },
@@ -487,6 +497,7 @@ impl Shader for ScanTiles {
     const CODE: Code = Code {
         name: "scan_tiles",
         words: include_spirv!("../spv/scan_tiles.spv"),
+        without_float64: None,
         argument_bytes: 36,
         buffers: &[
             BufferArgument { name: "words", offset: 0, access: Access::Read },
@@ -531,6 +542,7 @@ impl Shader for SelfTestF64 {
     const CODE: Code = Code {
         name: "self_test_f64",
         words: include_spirv!("../spv/self_test_f64.spv"),
+        without_float64: None,
         argument_bytes: 20,
         buffers: &[
             BufferArgument { name: "pairs", offset: 0, access: Access::Read },
@@ -579,6 +591,7 @@ impl Shader for SortCountU32 {
     const CODE: Code = Code {
         name: "sort_count_u32",
         words: include_spirv!("../spv/sort_count_u32.spv"),
+        without_float64: None,
         argument_bytes: 40,
         buffers: &[
             BufferArgument { name: "keys", offset: 0, access: Access::Read },
@@ -641,6 +654,7 @@ impl Shader for SortCountU64 {
     const CODE: Code = Code {
         name: "sort_count_u64",
         words: include_spirv!("../spv/sort_count_u64.spv"),
+        without_float64: None,
         argument_bytes: 40,
         buffers: &[
             BufferArgument { name: "keys", offset: 0, access: Access::Read },
@@ -710,6 +724,7 @@ impl Shader for SortMoveU32 {
     const CODE: Code = Code {
         name: "sort_move_u32",
         words: include_spirv!("../spv/sort_move_u32.spv"),
+        without_float64: None,
         argument_bytes: 64,
         buffers: &[
             BufferArgument { name: "keys", offset: 0, access: Access::Read },
@@ -786,6 +801,7 @@ impl Shader for SortMoveU64 {
     const CODE: Code = Code {
         name: "sort_move_u64",
         words: include_spirv!("../spv/sort_move_u64.spv"),
+        without_float64: None,
         argument_bytes: 64,
         buffers: &[
             BufferArgument { name: "keys", offset: 0, access: Access::Read },

@@ -55,6 +55,8 @@ pub struct Code {
     pub name: &'static str,
     /// The module, aligned to words.
     pub words: &'static [u8],
+    /// The same kernel without f64, for devices that have none or that are not to use it.
+    pub without_float64: Option<&'static [u8]>,
     /// Bytes of arguments.
     pub argument_bytes: u32,
     /// The arguments that are buffers.
@@ -69,6 +71,18 @@ pub struct Code {
     pub source_hash: &'static str,
     /// The compiler.
     pub compiler: &'static str,
+}
+
+impl Code {
+    /// With the words that do without f64, where there are any.
+    pub(crate) fn less_float64(self) -> Code {
+        Code { words: self.without_float64.unwrap_or(self.words), ..self }
+    }
+
+    /// Whether these are those words.
+    pub(crate) fn is_less_float64(&self) -> bool {
+        self.without_float64.is_some_and(|words| std::ptr::eq(words, self.words))
+    }
 }
 
 /// A kernel's name as a type; implemented by generated code.

@@ -1,6 +1,6 @@
 //! GLSL to SPIR-V by shaderc.
 
-use super::sources::{Source, resolve};
+use super::sources::{NO_FLOAT64, Source, resolve};
 use std::path::{Path, PathBuf};
 
 /// shaderc, and what it is called in `kernels.rs`.
@@ -15,8 +15,8 @@ impl Compiler {
     }
 
     /// Compiles for Vulkan 1.3, optimized, names kept and source lines not. SPIR-V 1.5: what 1.6 brought serves no kernel
-    /// here, and its way to give the size of a workgroup is not known to rspirv.
-    pub(super) fn compile(&self, root: &Path, source: &Source) -> Result<Vec<u32>, String> {
+    /// here, and its way to give the size of a workgroup is not known to rspirv. `second` is for devices without f64.
+    pub(super) fn compile(&self, root: &Path, source: &Source, second: bool) -> Result<Vec<u32>, String> {
         let name = source.path.strip_prefix(root).unwrap_or(&source.path).to_string_lossy().replace('\\', "/");
         let failed = |error: shaderc::Error| format!("{name}: {error}");
         let text = std::fs::read_to_string(&source.path).map_err(|error| format!("{name}: {error}"))?;
@@ -28,6 +28,9 @@ impl Compiler {
         // shaderc drops every name without this; lines and sources are cut out below.
         options.set_generate_debug_info();
         options.set_warnings_as_errors();
+        if second {
+            options.add_macro_definition(NO_FLOAT64, None);
+        }
         options.set_include_callback(|wanted, _, from, _| {
             let from = root.join(PathBuf::from(from));
             let found = resolve(root, &from, wanted).ok_or(format!("there is no \"{wanted}\" to include"))?;

@@ -10,6 +10,8 @@ use std::process::{Command, Stdio};
 pub(super) struct Kernel<'a> {
     pub(super) source: &'a Source,
     pub(super) reflection: Reflection,
+    /// Whether there is a module without f64 as well.
+    pub(super) has_second: bool,
     pub(super) compiler: String,
 }
 
@@ -86,7 +88,7 @@ fn twin(text: &mut String, layout: &Layout) {
 }
 
 fn one(text: &mut String, kernel: &Kernel<'_>, structs: &mut BTreeMap<String, Layout>) -> Result<(), String> {
-    let Kernel { source, reflection, compiler } = kernel;
+    let Kernel { source, reflection, has_second, compiler } = kernel;
     let camel = camel(&source.name);
     let about = if source.about.is_empty() { vec![format!("`{}`", source.name)] } else { source.about.clone() };
     text.push('\n');
@@ -106,6 +108,8 @@ fn one(text: &mut String, kernel: &Kernel<'_>, structs: &mut BTreeMap<String, La
     let _ = writeln!(text, "}}\n\nimpl Shader for {camel} {{\ntype Args<'a> = {camel}Args<'a>;\n");
     let _ = writeln!(text, "const CODE: Code = Code {{\nname: {:?},", source.name);
     let _ = writeln!(text, "words: include_spirv!(\"../spv/{}.spv\"),", source.name);
+    let second = has_second.then(|| format!("Some(include_spirv!(\"../spv/{}.spv\"))", source.second()));
+    let _ = writeln!(text, "without_float64: {},", second.as_deref().unwrap_or("None"));
     let end = reflection.arguments.last().map_or(0, |last| last.offset + last.of.bytes());
     let _ = writeln!(text, "argument_bytes: {},\nbuffers: &[", end.next_multiple_of(4));
     for member in &reflection.arguments {

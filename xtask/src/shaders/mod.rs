@@ -1,6 +1,9 @@
 //! `cargo xtask shaders`: from `shaders-glsl/<stage>/<kernel>.comp` to `crates/polder-<stage>/spv/<kernel>.spv` and the
 //! generated `crates/polder-<stage>/src/kernels.rs`, which holds typed arguments for every kernel.
 //!
+//! A kernel of which a line is `#ifndef NO_FLOAT64`, also in what it includes, is compiled twice: the second time to
+//! `<kernel>.integers.spv`, with that macro defined, for devices without f64.
+//!
 //! Only compiling needs shaderc, and only then is it built (feature `shaders` of this package). What is checked with no
 //! compiler at hand: that every source and include is the one that was compiled, and that `kernels.rs` is what the
 //! committed SPIR-V says. With a compiler of the recorded version, also that it gives the committed bytes.
@@ -108,17 +111,26 @@ fn write(root: &Path, stage: &Stage, compiler: &compile::Compiler) -> Result<(),
     let folder = stage.spirv_folder(root);
     std::fs::create_dir_all(&folder).map_err(|error| format!("{}: {error}", folder.display()))?;
     let mut kernels = Vec::new();
+    let mut modules = Vec::new();
     for kernel in &stage.kernels {
-        let words = compiler.compile(root, kernel)?;
-        let path = stage.spirv_file(root, &kernel.name);
-        let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
-        sources::write_if_changed(&path, &bytes)?;
-        validate(&path)?;
-        let reflection = reflect::reflect(&kernel.name, &words)?;
-        kernels.push(generate::Kernel { source: kernel, reflection, compiler: compiler.name.clone() });
+        let mut write = |name: String, second: bool| -> Result<reflect::Reflection, String> {
+            let words = compiler.compile(root, kernel, second)?;
+            let path = stage.spirv_file(root, &name);
+            let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
+            sources::write_if_changed(&path, &bytes)?;
+            validate(&path)?;
+            modules.push(name);
+            reflect::reflect(&kernel.name, &words)
+        };
+        let reflection = write(kernel.name.clone(), false)?;
+        let has_second = kernel.has_second(&reflection.capabilities);
+        if has_second {
+            reflection.check_second(&write(kernel.second(), true)?, &kernel.name)?;
+        }
+        kernels.push(generate::Kernel { source: kernel, reflection, has_second, compiler: compiler.name.clone() });
     }
     for name in stage.committed(root)? {
-        if !stage.kernels.iter().any(|kernel| kernel.name == name) {
+        if !modules.contains(&name) {
             let path = stage.spirv_file(root, &name);
             std::fs::remove_file(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         }
@@ -135,18 +147,26 @@ fn check_without_compiler(root: &Path, stage: &Stage) -> Result<(), String> {
     let path = stage.kernels_file(root);
     let committed = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}; {hint}", path.display()))?;
     let compilers = generate::recorded_compilers(&committed);
-    let mut names: Vec<String> = stage.kernels.iter().map(|kernel| kernel.name.clone()).collect();
+    let mut names = Vec::new();
+    let mut kernels = Vec::new();
+    for kernel in &stage.kernels {
+        let mut read = |name: String| -> Result<reflect::Reflection, String> {
+            let path = stage.spirv_file(root, &name);
+            validate(&path)?;
+            names.push(name);
+            reflect::reflect(&kernel.name, &sources::read_words(&path)?).map_err(|error| format!("{error}; {hint}"))
+        };
+        let reflection = read(kernel.name.clone())?;
+        let has_second = kernel.has_second(&reflection.capabilities);
+        if has_second {
+            reflection.check_second(&read(kernel.second())?, &kernel.name)?;
+        }
+        let compiler = compilers.get(&kernel.name).cloned().unwrap_or_default();
+        kernels.push(generate::Kernel { source: kernel, reflection, has_second, compiler });
+    }
     names.sort();
     if stage.committed(root)? != names {
         return Err(format!("shaders-glsl/{0} and crates/polder-{0}/spv hold different kernels; {hint}", stage.name));
-    }
-    let mut kernels = Vec::new();
-    for kernel in &stage.kernels {
-        let path = stage.spirv_file(root, &kernel.name);
-        let reflection = reflect::reflect(&kernel.name, &sources::read_words(&path)?)?;
-        validate(&path)?;
-        let compiler = compilers.get(&kernel.name).cloned().unwrap_or_default();
-        kernels.push(generate::Kernel { source: kernel, reflection, compiler });
     }
     if generate::formatted(&generate::kernels(stage, &kernels)?)? != committed {
         return Err(format!(
@@ -170,9 +190,11 @@ fn check_bytes(root: &Path, stage: &Stage, compiler: &compile::Compiler) -> Resu
             other += 1;
             continue;
         }
-        let path = stage.spirv_file(root, &kernel.name);
-        if compiler.compile(root, kernel)? != sources::read_words(&path)? {
-            return Err(format!("{} is not what {} makes of its source", path.display(), compiler.name));
+        for (name, second) in [(kernel.name.clone(), false), (kernel.second(), true)] {
+            let path = stage.spirv_file(root, &name);
+            if (!second || path.exists()) && compiler.compile(root, kernel, second)? != sources::read_words(&path)? {
+                return Err(format!("{} is not what {} makes of its source", path.display(), compiler.name));
+            }
         }
     }
     let same = stage.kernels.len() - other;

@@ -89,6 +89,22 @@ impl Layout {
     }
 }
 
+impl Reflection {
+    /// Whether the same kernel, compiled without f64, takes the same arguments and has none.
+    pub(super) fn check_second(&self, second: &Reflection, kernel: &str) -> Result<(), String> {
+        let expected = self.capabilities.iter().filter(|name| *name != "Float64");
+        let same = self.arguments == second.arguments
+            && self.workgroup == second.workgroup
+            && second.constants.iter().all(|constant| self.constants.contains(constant))
+            && second.capabilities.iter().all(|name| expected.clone().any(|expected| expected == name));
+        if same {
+            Ok(())
+        } else {
+            Err(format!("{kernel}: without f64 it takes other arguments or needs other features"))
+        }
+    }
+}
+
 struct Reader {
     module: Module,
     kernel: String,

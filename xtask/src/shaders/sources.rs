@@ -19,6 +19,23 @@ pub(super) struct Source {
     pub(super) about: Vec<String>,
     /// SHA-256 of the file and of all that it includes, with their names.
     pub(super) hash: String,
+    /// Whether it says what to do without f64, for devices that have none.
+    asks_for_float64: bool,
+}
+
+/// Defined where a kernel is compiled for devices without f64. A kernel whose sources ask for it is compiled twice.
+pub(super) const NO_FLOAT64: &str = "NO_FLOAT64";
+
+impl Source {
+    /// Whether there is a second module of it, without f64, beside one that uses these capabilities.
+    pub(super) fn has_second(&self, capabilities: &[String]) -> bool {
+        self.asks_for_float64 && capabilities.iter().any(|name| name == "Float64")
+    }
+
+    /// The second module's name: `<kernel>.integers`.
+    pub(super) fn second(&self) -> String {
+        format!("{}.integers", self.name)
+    }
 }
 
 impl Stage {
@@ -30,15 +47,15 @@ impl Stage {
         self.crate_folder(root).join("spv")
     }
 
-    pub(super) fn spirv_file(&self, root: &Path, kernel: &str) -> PathBuf {
-        self.spirv_folder(root).join(format!("{kernel}.spv"))
+    pub(super) fn spirv_file(&self, root: &Path, module: &str) -> PathBuf {
+        self.spirv_folder(root).join(format!("{module}.spv"))
     }
 
     pub(super) fn kernels_file(&self, root: &Path) -> PathBuf {
         self.crate_folder(root).join("src").join("kernels.rs")
     }
 
-    /// The kernels whose SPIR-V is in the crate, sorted.
+    /// The modules that are in the crate, sorted.
     pub(super) fn committed(&self, root: &Path) -> Result<Vec<String>, String> {
         let folder = self.spirv_folder(root);
         if !folder.exists() {
@@ -97,12 +114,14 @@ fn source(root: &Path, path: PathBuf) -> Result<Source, String> {
         hash.update([0]);
     }
     let hash = hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect();
+    let asks_for_float64 =
+        parts.values().any(|text| text.lines().any(|line| line.trim() == format!("#ifndef {NO_FLOAT64}")));
     let about = parts[&named(root, &path)]
         .lines()
         .map_while(|line| line.strip_prefix("//"))
         .map(|line| line.trim().to_owned())
         .collect();
-    Ok(Source { name: stem(&path), path, about, hash })
+    Ok(Source { name: stem(&path), path, about, hash, asks_for_float64 })
 }
 
 fn named(root: &Path, path: &Path) -> String {

@@ -20,9 +20,11 @@
 //! - Signs are exact and ties are settled, so no edge is left for another device to decide.
 
 mod active;
+mod signs;
 mod start;
 
 pub use active::Active;
+pub use signs::{must_flip_signs, orient2d_signs};
 pub use start::{chain, sweep};
 
 use crate::{FlipError, FlipReport, priority};
