@@ -78,11 +78,13 @@ impl<T: Pod> Buffer<T> {
         let (device, name) = (Arc::clone(&self.inner.device), self.inner.name);
         let wanted = bytes_of::<T>(len);
         let limits = &device.info.limits;
-        let roomy = wanted.max(old.saturating_add(old / 2)).min(limits.buffer_bytes.min(limits.allocation_bytes));
+        let roomy = wanted.max(old.saturating_add(old / 2)).min(limits.buffer_bytes);
         self.len = 0;
         self.inner = allocate(&device, name, 0)?;
         self.inner = match allocate(&device, name, roomy.max(wanted)) {
-            Err(Error::OutOfMemory { .. }) if roomy > wanted => allocate(&device, name, wanted)?,
+            Err(Error::OutOfMemory { .. } | Error::TooLarge { .. }) if roomy > wanted => {
+                allocate(&device, name, wanted)?
+            }
             other => other?,
         };
         self.len = len;

@@ -121,7 +121,7 @@ pub struct Limits {
     pub argument_bytes: u32,
     /// Bytes of one buffer.
     pub buffer_bytes: u64,
-    /// Bytes of one allocation.
+    /// Bytes of one allocation, as promised; some drivers give more (see [`Estimate::check`](crate::Estimate::check)).
     pub allocation_bytes: u64,
     /// Lanes of a subgroup, as kernels here get them.
     pub subgroup: u32,
@@ -172,7 +172,7 @@ impl fmt::Display for DeviceInfo {
         writeln!(
             f,
             "   buffers up to {} MiB, workgroups of {}, {} KiB of shared memory, subgroups of {}",
-            limits.buffer_bytes.min(limits.allocation_bytes) >> 20,
+            limits.buffer_bytes >> 20,
             limits.workgroup_invocations,
             limits.shared_bytes >> 10,
             limits.subgroup

@@ -14,6 +14,8 @@ pub(crate) struct Memory {
     cap: Option<u64>,
     used: AtomicU64,
     peak: AtomicU64,
+    /// The largest piece that the driver gave.
+    given: AtomicU64,
 }
 
 /// Bytes of device memory that buffers of one device hold, staging included.
@@ -27,7 +29,13 @@ pub struct MemoryUse {
 
 impl Memory {
     pub(crate) fn new(allocator: Arc<Mutex<Allocator>>, cap: Option<u64>) -> Self {
-        Memory { allocator: Some(allocator), cap, used: AtomicU64::new(0), peak: AtomicU64::new(0) }
+        Memory {
+            allocator: Some(allocator),
+            cap,
+            used: AtomicU64::new(0),
+            peak: AtomicU64::new(0),
+            given: AtomicU64::new(0),
+        }
     }
 
     pub(crate) fn release(&mut self) {
@@ -66,10 +74,8 @@ impl Allocated {
         let used = memory.used.load(Ordering::Relaxed);
         let refused = || Error::OutOfMemory { what: name.to_owned(), bytes, used };
         let limits = &device.info.limits;
-        let largest = limits.buffer_bytes.min(limits.allocation_bytes);
-        if bytes > largest {
-            let what = format!("one buffer, `{name}`");
-            return Err(Error::TooLarge { needed: bytes, available: largest, what });
+        if bytes > limits.buffer_bytes {
+            return Err(too_large(name, bytes, limits.buffer_bytes));
         }
         if device.faults.allocation_fails() || memory.cap.is_some_and(|cap| used.saturating_add(bytes) > cap) {
             return Err(refused());
@@ -79,16 +85,22 @@ impl Allocated {
         let buffer = unsafe { device.raw.create_buffer(&info, None) }.map_err(|_| refused())?;
         // SAFETY: the buffer was made from this device.
         let requirements = unsafe { device.raw.get_buffer_memory_requirements(buffer) };
+        // Larger ones some drivers give all the same.
+        let promised = requirements.size <= limits.allocation_bytes;
         let mut made = Allocated { buffer, bytes, allocation: None, device: Arc::clone(device) };
         let description = AllocationCreateDesc {
             name,
             requirements,
             location,
             linear: true,
-            allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+            allocation_scheme: match promised {
+                true => AllocationScheme::GpuAllocatorManaged,
+                false => AllocationScheme::DedicatedBuffer(buffer),
+            },
         };
         let allocation = memory.with_allocator(|allocator| allocator.allocate(&description)).ok_or_else(refused)?;
         let allocation = allocation.map_err(|error| match error {
+            AllocationError::OutOfMemory if !promised => too_large(name, bytes, limits.allocation_bytes),
             AllocationError::OutOfMemory => refused(),
             other => Error::OutOfMemory { what: format!("{name} ({other})"), bytes, used },
         })?;
@@ -148,24 +160,58 @@ impl Estimate {
     }
 
     /// [`Error::TooLarge`] where a buffer passes a limit of the device, or all together the memory that is left.
+    ///
+    /// A buffer larger than the driver promises to allocate (4 GiB on many) is asked for, and given back at once: some
+    /// give more than they promise.
     pub fn check(&self, device: &Device) -> Result<(), Error> {
         let limits = device.info().limits;
-        let largest = limits.buffer_bytes.min(limits.allocation_bytes);
-        if let Some((name, bytes)) = self.buffers.iter().find(|(_, bytes)| *bytes > largest) {
-            let what = format!("one buffer, `{name}`");
-            return Err(Error::TooLarge { needed: *bytes, available: largest, what });
+        let largest = self.buffers.iter().max_by_key(|(_, bytes)| *bytes).copied();
+        if let Some((name, bytes)) = largest.filter(|(_, bytes)| *bytes > limits.buffer_bytes) {
+            return Err(too_large(name, bytes, limits.buffer_bytes));
         }
         let available = device.available_memory();
         if self.bytes() > available {
-            let (name, _) = self.buffers.iter().max_by_key(|(_, bytes)| *bytes).copied().unwrap_or_default();
+            let (name, _) = largest.unwrap_or_default();
             let what = format!("all buffers; the largest is `{name}`");
             return Err(Error::TooLarge { needed: self.bytes(), available, what });
         }
-        Ok(())
+        match largest {
+            Some((name, bytes)) if bytes > limits.allocation_bytes && !device.inner.gives(bytes) => {
+                Err(too_large(name, bytes, limits.allocation_bytes))
+            }
+            _ => Ok(()),
+        }
     }
 }
 
+fn too_large(name: &str, needed: u64, available: u64) -> Error {
+    Error::TooLarge { needed, available, what: format!("one buffer, `{name}`") }
+}
+
 impl DeviceInner {
+    /// Whether the driver gives so much in one piece: tried, unless it gave as much before.
+    fn gives(&self, bytes: u64) -> bool {
+        let given = &self.memory.given;
+        if bytes <= given.load(Ordering::Relaxed) {
+            return true;
+        }
+        // SAFETY: the physical device is of this instance.
+        let all = unsafe { self.instance.inner.raw.get_physical_device_memory_properties(self.info.physical) };
+        let local = all.memory_types_as_slice().iter();
+        let local =
+            local.zip(0..).find(|(kind, _)| kind.property_flags.contains(vk::MemoryPropertyFlags::DEVICE_LOCAL));
+        let Some((_, kind)) = local else { return false };
+        let mut flags = vk::MemoryAllocateFlagsInfo::default().flags(vk::MemoryAllocateFlags::DEVICE_ADDRESS);
+        let wanted =
+            vk::MemoryAllocateInfo::default().allocation_size(bytes).memory_type_index(kind).push_next(&mut flags);
+        // SAFETY: the device is alive and has this kind of memory.
+        let Ok(memory) = (unsafe { self.raw.allocate_memory(&wanted, None) }) else { return false };
+        // SAFETY: allocated a moment ago, and bound to nothing.
+        unsafe { self.raw.free_memory(memory, None) };
+        given.fetch_max(bytes, Ordering::Relaxed);
+        true
+    }
+
     /// Bytes that may still be allocated: what the driver would give, within the cap.
     pub(crate) fn available_memory(&self) -> u64 {
         let used = self.memory.usage().used;
