@@ -87,6 +87,11 @@ pub struct SignsBuffers {
 }
 
 impl SignsBuffers {
+    /// The tuples that the filter left, in the order of arrival.
+    pub fn deferred(&self) -> View<'_, u32> {
+        self.deferred.view()
+    }
+
     /// One word: how many tuples the filter left, once the recording has run.
     pub fn deferred_count(&self) -> View<'_, u32> {
         self.counter.view()
