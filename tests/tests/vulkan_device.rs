@@ -1,4 +1,4 @@
-//! Devices: which one is taken, what it is asked, whose it is, and what happens when it fails.
+//! Devices: which one is taken, what it is asked, and what happens when it fails.
 #![cfg(feature = "gpu-tests")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -6,11 +6,10 @@ mod vulkan_support;
 
 use glam::DVec2;
 use polder_flip::gpu::{Arithmetic, Signs};
-use polder_vulkan::ash::vk;
 use polder_vulkan::primitives::{Compact, Scan, Sort};
 use polder_vulkan::{
-    Buffer, CacheFolder, Device, DeviceKind, DeviceOptions, Engine, Error, Estimate, Feature, Instance, Lent,
-    Recording, RunOptions, Selection, requirements,
+    Buffer, CacheFolder, Device, DeviceKind, DeviceOptions, Engine, Error, Estimate, Feature, Instance, Recording,
+    RunOptions, Selection,
 };
 use std::time::Duration;
 use vulkan_support::{Gpu, options, words};
@@ -260,60 +259,4 @@ fn predicates_without_f64(device: &Device) {
     let expected = polder_flip::reference::must_flip_signs(&corners, &quadruples).unwrap();
     assert_eq!(expected, [1, 0, 0]);
     assert_eq!(engine.download_vec(output.view().cast::<i32>()).unwrap(), expected);
-}
-
-/// A device that a caller made, lends, and uses again afterwards.
-#[test]
-#[expect(unsafe_code, reason = "making a device by hand")]
-fn a_lent_device_is_used_and_not_destroyed() {
-    // SAFETY: plain Vulkan, destroyed in order at the end; the features are all that `requirements` names.
-    unsafe {
-        let entry = polder_vulkan::ash::Entry::load().unwrap();
-        let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_3);
-        let instance =
-            entry.create_instance(&vk::InstanceCreateInfo::default().application_info(&application), None).unwrap();
-        let index = Gpu::open().device.info().index;
-        let physical = instance.enumerate_physical_devices().unwrap()[index];
-        let families = instance.get_physical_device_queue_family_properties(physical);
-        let family =
-            families.iter().position(|family| family.queue_flags.contains(vk::QueueFlags::COMPUTE)).unwrap() as u32;
-        let mut vulkan12 = vk::PhysicalDeviceVulkan12Features::default()
-            .buffer_device_address(true)
-            .timeline_semaphore(true)
-            .host_query_reset(true);
-        let mut vulkan13 = vk::PhysicalDeviceVulkan13Features::default()
-            .synchronization2(true)
-            .subgroup_size_control(true)
-            .compute_full_subgroups(true);
-        let plain = vk::PhysicalDeviceFeatures::default().shader_int64(true);
-        assert_eq!(requirements().features.len(), 7);
-        let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
-        let description = vk::DeviceCreateInfo::default()
-            .queue_create_infos(&queues)
-            .enabled_features(&plain)
-            .push_next(&mut vulkan12)
-            .push_next(&mut vulkan13);
-        let raw = instance.create_device(physical, &description, None).unwrap();
-        let queue = raw.get_device_queue(family, 0);
-        for _ in 0..2 {
-            let lent = Lent {
-                instance: instance.clone(),
-                physical,
-                device: raw.clone(),
-                queue,
-                family,
-                optional: Vec::new(),
-                allocator: None,
-                memory_cap: None,
-                cache: CacheFolder::Off,
-            };
-            let device = Device::borrow(lent).unwrap();
-            assert_eq!(device.self_test().unwrap(), polder_vulkan::SelfTest::NoFloat64);
-            assert_eq!(work(&device), work(&Gpu::open().device));
-            predicates_without_f64(&device);
-        }
-        raw.device_wait_idle().unwrap();
-        raw.destroy_device(None);
-        instance.destroy_instance(None);
-    }
 }

@@ -2,6 +2,8 @@
 //! without, where there is none). Without a device the test fails; so it does when the layer says anything.
 #![allow(dead_code, clippy::unwrap_used, reason = "tests; each takes what it needs")]
 
+pub(crate) mod faults;
+
 use polder_vulkan::{
     Buffer, CacheFolder, Device, DeviceOptions, Engine, Recording, RunOptions, RunReport, Selection, View,
 };
