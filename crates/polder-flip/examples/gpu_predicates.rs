@@ -5,7 +5,8 @@ use glam::DVec2;
 use polder_flip::gpu::{Arithmetic, Signs, SignsBuffers};
 use polder_flip::kernels::{MustFlipSigns, MustFlipSignsArgs, Orient2dSigns, Orient2dSignsArgs};
 use polder_flip::reference;
-use polder_vulkan::{Buffer, Device, DeviceOptions, Engine, Kernel, Recording, RunOptions, groups_for};
+use polder_vulkan::{Buffer, CacheFolder, Device, DeviceOptions, Engine, Kernel, Recording, RunOptions, groups_for};
+use std::time::Instant;
 
 const RUNS: usize = 7;
 /// Tests whose signs are compared with the reference.
@@ -14,9 +15,17 @@ const COMPARED: usize = 20_000;
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
-    let device = Device::open(&DeviceOptions::default())?;
+    let device = Device::open(&DeviceOptions { cache: CacheFolder::Off, ..DeviceOptions::default() })?;
     println!("{}", device.info());
     println!("{}", device.self_test()?);
+    for (name, arithmetic) in [("filter", 0), ("filter, then integers", 1), ("integers", 2)] {
+        let constants = [("ARITHMETIC", arithmetic), ("WORKGROUP", 256)];
+        let start = Instant::now();
+        Kernel::<Orient2dSigns>::new(&device, &constants)?;
+        let first = start.elapsed();
+        Kernel::<MustFlipSigns>::new(&device, &constants)?;
+        println!("to compile {name}: orient2d {first:?}, must_flip {:?}", start.elapsed() - first);
+    }
     let count: usize = std::env::args().nth(1).map_or(Ok(1 << 16), |count| count.parse())?;
     println!(
         "{count} tests each; ns a test: filter alone (what it leaves), with integers behind it, filter and list, integers"

@@ -206,6 +206,11 @@ mod tests {
         // A file beside the kernel hides the shared one.
         write("shaders-glsl/flip/a.glsl", "");
         assert!(hash() != second && hash() != first);
+        // A second module only where the source asks for f64 and the first module uses it.
+        let has_second = |capability: &str| stages(&root).unwrap()[0].kernels[0].has_second(&[capability.to_owned()]);
+        assert!(!has_second("Float64"));
+        write("shaders-glsl/flip/a.glsl", "#ifndef NO_FLOAT64\n#endif\n");
+        assert!(has_second("Float64") && !has_second("Int64"));
         write("shaders-glsl/flip/mark.comp", "#include \"none.glsl\"\n");
         assert!(stages(&root).is_err());
         std::fs::remove_dir_all(&root).unwrap();
