@@ -125,23 +125,28 @@ int fixed_orient2d(uvec4 a, uvec4 b, uvec4 c, int low) {
     return sign_of(add(signed_product(ax, by), negated(signed_product(ay, bx))));
 }
 
-u64vec4 fixed_term(int64_t px, int64_t py, int64_t qx, int64_t qy, int64_t rx, int64_t ry) {
-    uint64_t x = uint64_t(abs(px)), y = uint64_t(abs(py));
-    u64vec2 lifting = add(multiply(x, x), multiply(y, y));
-    u64vec2 minor = add(signed_product(qx, ry), negated(signed_product(qy, rx)));
-    bool negative = int64_t(minor.y) < 0l;
-    u64vec4 term = multiply(lifting, negative ? negated(minor) : minor);
-    return negative ? negated(term) : term;
-}
-
 int fixed_incircle(uvec4 a, uvec4 b, uvec4 c, uvec4 d, int low) {
     int64_t dx = fixed_point(d.xy, low), dy = fixed_point(d.zw, low);
     int64_t ax = fixed_point(a.xy, low) - dx, ay = fixed_point(a.zw, low) - dy;
     int64_t bx = fixed_point(b.xy, low) - dx, by = fixed_point(b.zw, low) - dy;
     int64_t cx = fixed_point(c.xy, low) - dx, cy = fixed_point(c.zw, low) - dy;
-    u64vec4 sum = fixed_term(ax, ay, bx, by, cx, cy);
-    sum = add(sum, fixed_term(bx, by, cx, cy, ax, ay));
-    sum = add(sum, fixed_term(cx, cy, ax, ay, bx, by));
+    u64vec4 sum = u64vec4(0ul);
+    // Not unrolled: a third of the code.
+    [[dont_unroll]] for (int k = 0; k < 3; k++) {
+        uint64_t x = uint64_t(abs(ax)), y = uint64_t(abs(ay));
+        u64vec2 lifting = add(multiply(x, x), multiply(y, y));
+        u64vec2 minor = add(signed_product(bx, cy), negated(signed_product(by, cx)));
+        bool negative = int64_t(minor.y) < 0l;
+        u64vec4 term = multiply(lifting, negative ? negated(minor) : minor);
+        sum = add(sum, negative ? negated(term) : term);
+        int64_t x0 = ax, y0 = ay;
+        ax = bx;
+        ay = by;
+        bx = cx;
+        by = cy;
+        cx = x0;
+        cy = y0;
+    }
     return sign_of(sum);
 }
 
@@ -225,11 +230,11 @@ int product_sum_sign(uvec4 points[4], bool incircle) {
     uint end = incircle ? 128u : 16u, count = incircle ? 4u : 3u;
     int top = NOTHING, rest = NOTHING, high = 0;
     u64vec4 low = u64vec4(0ul);
-    for (uint window = 0u; window <= 49u; window++) {
+    [[dont_unroll]] for (uint window = 0u; window <= 49u; window++) {
         bool first = window == 0u;
         int bottom = first ? NOTHING : top - WINDOW_BITS;
         rest = NOTHING;
-        for (uint product = 0u; product < end; product++) {
+        [[dont_unroll]] for (uint product = 0u; product < end; product++) {
             uint i = product & 3u, j = (product >> 2) & 3u, k = (product >> 4) & 3u, axis = product >> 6;
             if (i == j || i >= count || j >= count || (incircle && (i == k || j == k))) {
                 continue;

@@ -71,7 +71,7 @@ impl Shader for CheckTriangles {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "41585363fe81e40bec44705d225ee7130ed8c1fbe998e13d0a911af22fd93684",
+        source_hash: "eacd63cd4f0b0b57dcf71e2fb3c7d2d4dc6793a6447b0895f4375c3702bb5756",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

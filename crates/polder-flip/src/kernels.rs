@@ -51,7 +51,7 @@ impl Shader for MustFlipSigns {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "215b36fbce073aeb410a26fac3c0a01ad43dff89fe02e1d696c44acd99afaa28",
+        source_hash: "c93c16cb1782acd5dfa576208b566298b56cfea79e423b3099bf1bf81a867e2f",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -115,7 +115,7 @@ impl Shader for Orient2dSigns {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "f1f890b8d6df4de45c671546137ba31d0b7bb72463b7f6a3b62c422ea0d64dbe",
+        source_hash: "a73f38575f3a59e7799c8994067990a5ac10e9a0024d0814002b98058cd85d48",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
