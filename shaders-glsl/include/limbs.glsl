@@ -2,7 +2,7 @@
 //
 // A coordinate is the bits of an f64, low word first. Two ways, tried in this order:
 //
-// 1. *Fixed point*. If all coordinates of a call are multiples of 2^low and below 2^(low + 61), they become integers below
+// 1. *Fixed point*. If all coordinates of a call are multiples of a unit and below 2^61 units, they become integers below
 //    2^61: differences below 2^62, liftings and minors below 2^125, the sum of three products of these below 2^252. All of
 //    it stays in registers.
 // 2. *Products of mantissas*. Otherwise the determinant is expanded in the coordinates themselves: orient2d into 6 products
@@ -16,7 +16,7 @@
 
 const uint64_t LOW_WORD = 0xfffffffful;
 
-// --- Wide integers: u64vec2 has 128 bits, u64vec4 has 256, low word first, two's complement where signed.
+// --- Wide integers: u64vec2 has 128 bits, u64vec4 has 256, lowest first, two's complement where signed.
 
 u64vec2 multiply(uint64_t a, uint64_t b) {
     uint64_t a0 = a & LOW_WORD, a1 = a >> 32, b0 = b & LOW_WORD, b1 = b >> 32;
@@ -31,123 +31,84 @@ u64vec2 add(u64vec2 a, u64vec2 b) {
     return u64vec2(low, a.y + b.y + uint64_t(low < a.x));
 }
 
-u64vec2 negated(u64vec2 a) {
-    return u64vec2(~a.x + 1ul, ~a.y + uint64_t(a.x == 0ul));
+u64vec2 subtract(u64vec2 a, u64vec2 b) {
+    return u64vec2(a.x - b.x, a.y - b.y - uint64_t(a.x < b.x));
 }
 
 u64vec4 add(u64vec4 a, u64vec4 b) {
-    uint64_t carry;
-    u64vec4 sum;
-    sum.x = a.x + b.x;
-    carry = uint64_t(sum.x < a.x);
-    sum.y = a.y + b.y;
-    uint64_t first = uint64_t(sum.y < a.y);
-    sum.y += carry;
-    carry = first | uint64_t(sum.y < carry);
-    sum.z = a.z + b.z;
-    first = uint64_t(sum.z < a.z);
-    sum.z += carry;
-    carry = first | uint64_t(sum.z < carry);
-    sum.w = a.w + b.w + carry;
-    return sum;
-}
-
-u64vec4 negated(u64vec4 a) {
-    return add(u64vec4(~a.x, ~a.y, ~a.z, ~a.w), u64vec4(1ul, 0ul, 0ul, 0ul));
+    u64vec4 sum = a + b;
+    uint64_t carry = uint64_t(sum.x < a.x);
+    uint64_t y = sum.y + carry;
+    carry = uint64_t(sum.y < a.y) | uint64_t(y < carry);
+    uint64_t z = sum.z + carry;
+    carry = uint64_t(sum.z < a.z) | uint64_t(z < carry);
+    return u64vec4(sum.x, y, z, sum.w + carry);
 }
 
 u64vec4 multiply(u64vec2 a, u64vec2 b) {
-    u64vec2 low = multiply(a.x, b.x), high = multiply(a.y, b.y);
-    u64vec2 left = multiply(a.y, b.x), right = multiply(a.x, b.y);
-    u64vec4 sum = u64vec4(low, high);
-    sum = add(sum, u64vec4(0ul, left, 0ul));
-    return add(sum, u64vec4(0ul, right, 0ul));
+    u64vec4 sum = u64vec4(multiply(a.x, b.x), multiply(a.y, b.y));
+    sum = add(sum, u64vec4(0ul, multiply(a.y, b.x), 0ul));
+    return add(sum, u64vec4(0ul, multiply(a.x, b.y), 0ul));
 }
 
-u64vec2 signed_product(int64_t a, int64_t b) {
-    u64vec2 magnitude = multiply(uint64_t(abs(a)), uint64_t(abs(b)));
-    return (a < 0l) != (b < 0l) ? negated(magnitude) : magnitude;
+// All bits set if a is negative.
+uint64_t mask_of(uint64_t a) {
+    return uint64_t(int64_t(a) >> 63);
 }
 
-int sign_of(u64vec2 a) {
-    return int64_t(a.y) < 0l ? -1 : int((a.x | a.y) != 0ul);
+// A negative factor counts 2^64 too much as an unsigned one.
+u64vec2 signed_product(uint64_t a, uint64_t b) {
+    u64vec2 product = multiply(a, b);
+    return u64vec2(product.x, product.y - (a & mask_of(b)) - (b & mask_of(a)));
 }
 
-int sign_of(u64vec4 a) {
-    return int64_t(a.w) < 0l ? -1 : int((a.x | a.y | a.z | a.w) != 0ul);
+// a is not negative.
+u64vec4 signed_product(u64vec2 a, u64vec2 b) {
+    u64vec4 product = multiply(a, b);
+    return u64vec4(product.xy, subtract(product.zw, a & mask_of(b.y)));
+}
+
+u64vec2 cross_product(u64vec2 p, u64vec2 q) {
+    return subtract(signed_product(p.x, q.y), signed_product(p.y, q.x));
+}
+
+// Of a two's complement number with these bits below the highest limb.
+int sign_of(uint64_t highest, uint64_t others) {
+    return int64_t(highest) < 0l ? -1 : int((highest | others) != 0ul);
 }
 
 // --- The parts of an f64
 
-// The integer and the power of two that it is to be multiplied with; without the sign.
-uint64_t mantissa_of(uvec2 bits) {
-    uint high = bits.y & 0xfffffu;
-    return packUint2x32(uvec2(bits.x, (bits.y & 0x7ff00000u) == 0u ? high : high | 0x100000u));
-}
-
+// The eleven bits of the exponent, subnormal numbers as the smallest normal ones.
 int exponent_of(uvec2 bits) {
-    return max(int((bits.y >> 20) & 0x7ffu), 1) - 1075;
+    return max(int((bits.y >> 20) & 0x7ffu), 1);
 }
 
-// Exponents of the lowest bit that is set in any coordinate, and of the one after the highest.
-void widen(uvec2 bits, inout ivec2 span) {
-    uvec2 mantissa = unpackUint2x32(mantissa_of(bits));
-    if ((mantissa.x | mantissa.y) != 0u) {
-        int lowest = mantissa.x != 0u ? findLSB(mantissa.x) : 32 + findLSB(mantissa.y);
-        int highest = mantissa.y != 0u ? 33 + findMSB(mantissa.y) : 1 + findMSB(mantissa.x);
-        int exponent = exponent_of(bits);
-        span = ivec2(min(span.x, exponent + lowest), max(span.y, exponent + highest));
-    }
-}
-
-void widen(uvec4 point, inout ivec2 span) {
-    widen(point.xy, span);
-    widen(point.zw, span);
-}
-
-// In units of 2^low, which it is a multiple of.
-int64_t fixed_point(uvec2 bits, int low) {
-    uint64_t mantissa = mantissa_of(bits);
-    int shift = clamp(exponent_of(bits) - low, -63, 63);
-    mantissa = shift < 0 ? mantissa >> uint(-shift) : mantissa << uint(shift);
-    return (bits.y & 0x80000000u) != 0u ? -int64_t(mantissa) : int64_t(mantissa);
+// The absolute value in units of 2^(exponent - 1075).
+uint64_t mantissa_of(uvec2 bits) {
+    uint hidden = min((bits.y >> 20) & 0x7ffu, 1u);
+    return packUint2x32(uvec2(bits.x, (bits.y & 0xfffffu) | (hidden << 20)));
 }
 
 // --- 1. Fixed point
 
-const ivec2 NO_SPAN = ivec2(0x7fff, -0x7fff);
-const int FIXED_POINT_BITS = 61;
-
-int fixed_orient2d(uvec4 a, uvec4 b, uvec4 c, int low) {
-    int64_t cx = fixed_point(c.xy, low), cy = fixed_point(c.zw, low);
-    int64_t ax = fixed_point(a.xy, low) - cx, ay = fixed_point(a.zw, low) - cy;
-    int64_t bx = fixed_point(b.xy, low) - cx, by = fixed_point(b.zw, low) - cy;
-    return sign_of(add(signed_product(ax, by), negated(signed_product(ay, bx))));
+// The largest exponent of two coordinates.
+int larger_exponent(uvec4 point) {
+    return exponent_of(uvec2(0u, max(point.y & 0x7fffffffu, point.w & 0x7fffffffu)));
 }
 
-int fixed_incircle(uvec4 a, uvec4 b, uvec4 c, uvec4 d, int low) {
-    int64_t dx = fixed_point(d.xy, low), dy = fixed_point(d.zw, low);
-    int64_t ax = fixed_point(a.xy, low) - dx, ay = fixed_point(a.zw, low) - dy;
-    int64_t bx = fixed_point(b.xy, low) - dx, by = fixed_point(b.zw, low) - dy;
-    int64_t cx = fixed_point(c.xy, low) - dx, cy = fixed_point(c.zw, low) - dy;
-    u64vec4 sum = u64vec4(0ul);
-    // Not unrolled: a third of the code.
-    [[dont_unroll]] for (int k = 0; k < 3; k++) {
-        uint64_t x = uint64_t(abs(ax)), y = uint64_t(abs(ay));
-        u64vec2 lifting = add(multiply(x, x), multiply(y, y));
-        u64vec2 minor = add(signed_product(bx, cy), negated(signed_product(by, cx)));
-        bool negative = int64_t(minor.y) < 0l;
-        u64vec4 term = multiply(lifting, negative ? negated(minor) : minor);
-        sum = add(sum, negative ? negated(term) : term);
-        int64_t x0 = ax, y0 = ay;
-        ax = bx;
-        ay = by;
-        bx = cx;
-        by = cy;
-        cx = x0;
-        cy = y0;
-    }
-    return sign_of(sum);
+// A coordinate in units of 2^(exponent - 1083), below 2^61 if no exponent is larger; `lost` takes the bits below the unit.
+uint64_t fixed_point(uvec2 bits, int exponent, inout uint64_t lost) {
+    uint64_t value = mantissa_of(bits) << 8;
+    int shift = min(exponent - exponent_of(bits), 63);
+    uint64_t rounded = value >> shift;
+    lost |= value ^ (rounded << shift);
+    uint64_t sign = mask_of(packUint2x32(bits));
+    return (rounded ^ sign) - sign;
+}
+
+u64vec2 fixed_point(uvec4 point, int exponent, inout uint64_t lost) {
+    return u64vec2(fixed_point(point.xy, exponent, lost), fixed_point(point.zw, exponent, lost));
 }
 
 // --- 2. Products of mantissas
@@ -224,7 +185,7 @@ int product_sum_sign(uvec4 points[4], bool incircle) {
         exponents[2 * p + 1] = exponent_of(point.zw);
         negatives |= ((point.y >> 31) | ((point.w >> 31) << 1)) << uint(2 * p);
     }
-    // For orient2d, in the place of the lifting.
+    // For orient2d, in the place of the lifting. Exponents are all too large by the same number of biases.
     mantissas[8] = 1ul;
     exponents[8] = 0;
     uint end = incircle ? 128u : 16u, count = incircle ? 4u : 3u;
@@ -282,26 +243,39 @@ int product_sum_sign(uvec4 points[4], bool incircle) {
 // --- Signs
 
 int exact_orient2d(uvec4 a, uvec4 b, uvec4 c) {
-    ivec2 span = NO_SPAN;
-    widen(a, span);
-    widen(b, span);
-    widen(c, span);
-    if (span.y - span.x <= FIXED_POINT_BITS) {
-        return fixed_orient2d(a, b, c, span.x);
+    int exponent = max(larger_exponent(a), max(larger_exponent(b), larger_exponent(c)));
+    uint64_t lost = 0ul;
+    u64vec2 origin_c = fixed_point(c, exponent, lost);
+    u64vec2 p = fixed_point(a, exponent, lost) - origin_c;
+    u64vec2 q = fixed_point(b, exponent, lost) - origin_c;
+    if (lost != 0ul) {
+        return product_sum_sign(uvec4[](a, b, c, uvec4(0u)), false);
     }
-    return product_sum_sign(uvec4[](a, b, c, uvec4(0u)), false);
+    u64vec2 value = cross_product(p, q);
+    return sign_of(value.y, value.x);
 }
 
 int exact_incircle(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
-    ivec2 span = NO_SPAN;
-    widen(a, span);
-    widen(b, span);
-    widen(c, span);
-    widen(d, span);
-    if (span.y - span.x <= FIXED_POINT_BITS) {
-        return fixed_incircle(a, b, c, d, span.x);
+    int exponent = max(max(larger_exponent(a), larger_exponent(b)), max(larger_exponent(c), larger_exponent(d)));
+    uint64_t lost = 0ul;
+    u64vec2 origin_d = fixed_point(d, exponent, lost);
+    u64vec2 p = fixed_point(a, exponent, lost) - origin_d;
+    u64vec2 q = fixed_point(b, exponent, lost) - origin_d;
+    u64vec2 r = fixed_point(c, exponent, lost) - origin_d;
+    if (lost != 0ul) {
+        return product_sum_sign(uvec4[](a, b, c, d), true);
     }
-    return product_sum_sign(uvec4[](a, b, c, d), true);
+    u64vec4 sum = u64vec4(0ul);
+    // Not unrolled: a third of the code.
+    [[dont_unroll]] for (int k = 0; k < 3; k++) {
+        u64vec2 lifting = add(signed_product(p.x, p.x), signed_product(p.y, p.y));
+        sum = add(sum, signed_product(lifting, cross_product(q, r)));
+        u64vec2 first = p;
+        p = q;
+        q = r;
+        r = first;
+    }
+    return sign_of(sum.w, sum.x | sum.y | sum.z);
 }
 
 #endif

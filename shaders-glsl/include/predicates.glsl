@@ -36,21 +36,25 @@ Point point_at(ReadPoints positions, uint v) {
     return positions.at[v];
 }
 
-// Ascending with the number, -0.0 like 0.0.
-uint64_t order_of(uvec2 bits) {
+// Ascending with the number, -0.0 like 0.0: sign and magnitude as two's complement.
+int64_t order_of(uvec2 bits) {
     uint64_t word = packUint2x32(bits);
-    if ((word << 1u) == 0ul) {
-        word = 0ul;
-    }
-    return (bits.y & 0x80000000u) != 0u && word != 0ul ? ~word : word | 0x8000000000000000ul;
+    uint64_t sign = mask_of(word);
+    return int64_t(((word & 0x7ffffffffffffffful) ^ sign) - sign);
+}
+
+bool is_less(i64vec2 a, i64vec2 b) {
+    return a.x < b.x || (a.x == b.x && a.y < b.y);
+}
+
+i64vec2 order_of(Point p) {
+    return i64vec2(order_of(p.xy), order_of(p.zw));
 }
 
 // -1, 0 or 1: by x, then by y.
 int compare_points(Point a, Point b) {
-    uint64_t ax = order_of(a.xy), bx = order_of(b.xy);
-    uint64_t ay = order_of(a.zw), by = order_of(b.zw);
-    bool less = ax < bx || (ax == bx && ay < by);
-    return less ? -1 : int(ax != bx || ay != by);
+    i64vec2 p = order_of(a), q = order_of(b);
+    return int(is_less(q, p)) - int(is_less(p, q));
 }
 
 bool same_point(Point a, Point b) {
@@ -94,9 +98,10 @@ int must_flip(Point a, Point b, Point c, Point d) {
     if (sign != 0) {
         return sign < 0 ? 0 : sign;
     }
-    Point outer = compare_points(a, d) < 0 ? a : d;
-    Point inner = compare_points(b, c) < 0 ? b : c;
-    return int(compare_points(outer, inner) < 0);
+    // The smaller of a and d against the smaller of b and c.
+    i64vec2 orders[4] = i64vec2[](order_of(a), order_of(d), order_of(b), order_of(c));
+    bool flip = is_less(orders[0], orders[2]) && is_less(orders[0], orders[3]);
+    return int(flip || (is_less(orders[1], orders[2]) && is_less(orders[1], orders[3])));
 }
 
 #endif

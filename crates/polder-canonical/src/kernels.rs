@@ -71,7 +71,7 @@ impl Shader for CheckTriangles {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "eacd63cd4f0b0b57dcf71e2fb3c7d2d4dc6793a6447b0895f4375c3702bb5756",
+        source_hash: "e3a06267cc82a3600ff0c799d76e4c926e6f5428743f487d09537acff6bcd45f",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

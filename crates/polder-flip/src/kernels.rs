@@ -51,7 +51,7 @@ impl Shader for MustFlipSigns {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "c93c16cb1782acd5dfa576208b566298b56cfea79e423b3099bf1bf81a867e2f",
+        source_hash: "c07e5d4a083aec80deafb6dba670cbc5fe110a4b9e4af1e669eaa43cbff896ec",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -115,7 +115,7 @@ impl Shader for Orient2dSigns {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "a73f38575f3a59e7799c8994067990a5ac10e9a0024d0814002b98058cd85d48",
+        source_hash: "6ce5fe9b51ac77f341020cf442a626d967e7fb67410d5b6e6dcb550aad14b1c4",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
