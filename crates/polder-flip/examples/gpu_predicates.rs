@@ -1,4 +1,4 @@
-//! What a sign costs on a device, by kind of points and by arithmetic: nanoseconds a test, medians of seven by timestamps,
+//! What a sign costs on a device, by kind of points and by arithmetic: nanoseconds a test, medians of fifteen by timestamps,
 //! after the signs were held against the reference. `gpu_predicates [tests]`; `POLDER_DEVICE` names the device.
 
 use glam::DVec2;
@@ -6,9 +6,10 @@ use polder_flip::gpu::{Arithmetic, Signs, SignsBuffers};
 use polder_flip::kernels::{MustFlipSigns, MustFlipSignsArgs, Orient2dSigns, Orient2dSignsArgs};
 use polder_flip::reference;
 use polder_vulkan::{Buffer, CacheFolder, Device, DeviceOptions, Engine, Kernel, Recording, RunOptions, groups_for};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
-const RUNS: usize = 7;
+const RUNS: usize = 15;
+const WARM_UP: Duration = Duration::from_millis(700);
 /// Tests whose signs are compared with the reference.
 const COMPARED: usize = 20_000;
 
@@ -62,13 +63,12 @@ impl Random {
 
 type Make = fn(&mut Random, usize) -> [DVec2; 4];
 
-const SETS: [(&str, Make); 9] = [
+const SETS: [(&str, Make); 8] = [
     ("random", random),
     ("lattice", |_, i| square(i)),
     ("lattice of 0.1", |_, i| square(i).map(|p| p * 0.1)),
     ("1 in 1000 of a lattice of 0.1", |r, i| rarely(1000, r, i)),
-    ("1 in 100", |r, i| rarely(100, r, i)),
-    ("1 in 10", |r, i| rarely(10, r, i)),
+    ("1 in 10 of a lattice of 0.1", |r, i| rarely(10, r, i)),
     ("circle", |_, i| [0, 1, 3, 2].map(|k| DVec2::from_angle((i + k) as f64 * 6.28e-6))),
     ("lattice of 0.1 with a stray 1e-20", |_, i| {
         let mut square = square(i).map(|p| p * 0.1);
@@ -147,7 +147,6 @@ fn measure(device: &Device, name: &str, points: &[[DVec2; 4]]) -> Result<(), Fai
             }
             Ok(recording)
         };
-        let mut times = Vec::new();
         let mut left = 0;
         let ways = [alone(0)?, alone(1)?, whole(&filtered)?, whole(&integers)?];
         for (way, recording) in ways.iter().enumerate() {
@@ -159,16 +158,26 @@ fn measure(device: &Device, name: &str, points: &[[DVec2; 4]]) -> Result<(), Fai
             } else if signs.iter().zip(expected).any(|(&found, &expected)| found as i32 != expected) {
                 return Err(format!("{name}: {predicate} gives another result").into());
             }
-            let mut runs = Vec::new();
-            for _ in 0..RUNS {
-                let options = RunOptions { timestamps: true, ..RunOptions::default() };
-                runs.push(engine.run(recording, &options)?.timings.total());
-            }
-            runs.sort();
-            times.push(runs[RUNS / 2].as_secs_f64() * 1e9 / count as f64);
         }
+        // Clocks rise with work, so all take turns, and the first turns do not count.
+        let mut runs = [const { Vec::new() }; 4];
+        let start = Instant::now();
+        while runs[0].len() < RUNS {
+            let warm = start.elapsed() > WARM_UP;
+            for (recording, runs) in ways.iter().zip(&mut runs) {
+                let options = RunOptions { timestamps: true, ..RunOptions::default() };
+                let time = engine.run(recording, &options)?.timings.total();
+                if warm {
+                    runs.push(time);
+                }
+            }
+        }
+        let times = runs.map(|mut runs| {
+            runs.sort();
+            runs[RUNS / 2].as_secs_f64() * 1e9 / count as f64
+        });
         let rate = 100.0 * f64::from(left) / count as f64;
-        let [filter, inline, list, integers] = times[..] else { continue };
+        let [filter, inline, list, integers] = times;
         println!("{predicate:<9} {filter:8.4} ({rate:7.3} %) {inline:8.4} {list:8.4} {integers:8.4}  {name}");
     }
     Ok(())
