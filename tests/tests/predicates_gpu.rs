@@ -11,7 +11,7 @@ use polder_flip::gpu::{Arithmetic, Kernels, Signs};
 use polder_flip::kernels::{MustFlipSigns, MustFlipSignsArgs, Orient2dSigns, Orient2dSignsArgs};
 use polder_flip::reference;
 use polder_vulkan::{Kernel, groups_for};
-use quadruples::{Family, families};
+use quadruples::{Family, Random, families, ldexp};
 use vulkan_support::Gpu;
 
 /// What a word holds that no kernel wrote.
@@ -20,7 +20,50 @@ const UNTOUCHED: i32 = 77;
 /// So many quadruples of each family: `POLDER_TUPLES`, else few enough for a CPU that plays a GPU.
 fn cases(seed: u64) -> Vec<Family> {
     let count = std::env::var("POLDER_TUPLES").ok().and_then(|count| count.parse().ok()).unwrap_or(8_000);
-    families(count, seed)
+    let mut list = families(count, seed);
+    let mut random = Random(seed);
+    for (name, make) in WIDE {
+        let quadruples = (0..count).map(|_| make(&mut random)).collect();
+        list.push(Family { name, quadruples, naive_orient2d_fails: true, naive_incircle_fails: true });
+    }
+    list
+}
+
+type Make = fn(&mut Random) -> [DVec2; 4];
+
+/// Numbers of many bits, and determinants that are zero or nearly so.
+const WIDE: [(&str, Make); 5] = [
+    ("rectangles of all exponents", |r| rectangle(r, -1000, 990)),
+    ("rectangles of a few exponents", |r| rectangle(r, -9, 60)),
+    ("rectangles, a corner one ulp off", |r| {
+        let points = rectangle(r, -40, 40);
+        off_by_one(r, points)
+    }),
+    ("rectangles of all exponents, a corner one ulp off", |r| {
+        let points = rectangle(r, -1000, 990);
+        off_by_one(r, points)
+    }),
+    ("multiples of a vector, one ulp off", |r| {
+        let step = DVec2::new(r.unit() - 0.5, r.unit() - 0.5);
+        let mut points = [0; 4].map(|_| step * ldexp(1.0, r.integer(-500, 500) as i32));
+        points[r.below(4) as usize] = DVec2::ZERO;
+        if r.below(2) == 0 { points } else { off_by_one(r, points) }
+    }),
+];
+
+/// Cocircular, whatever the four numbers are.
+fn rectangle(random: &mut Random, low: i64, high: i64) -> [DVec2; 4] {
+    let [x, y, z, w] = [0; 4].map(|_| ldexp(random.unit() - 0.5, random.integer(low, high) as i32));
+    let mut corners = [[x, y], [z, y], [x, w], [z, w]].map(DVec2::from);
+    random.shuffle(&mut corners);
+    corners
+}
+
+fn off_by_one(random: &mut Random, mut points: [DVec2; 4]) -> [DVec2; 4] {
+    let point = &mut points[random.below(4) as usize];
+    let coordinate = if random.below(2) == 0 { &mut point.x } else { &mut point.y };
+    *coordinate = if random.below(2) == 0 { coordinate.next_up() } else { coordinate.next_down() };
+    points
 }
 
 /// The positions of all quadruples, and the numbers of the vertices of the first `N` points of each.
