@@ -4,8 +4,6 @@
 
 mod vulkan_support;
 
-use glam::DVec2;
-use polder_flip::gpu::{Arithmetic, Signs};
 use polder_vulkan::primitives::{Compact, Scan, Sort};
 use polder_vulkan::{
     Buffer, CacheFolder, Device, DeviceKind, DeviceOptions, Engine, Error, Estimate, Feature, Instance, Recording,
@@ -237,26 +235,4 @@ fn pipelines_are_kept_on_disk() {
     bytes[last] ^= 1;
     std::fs::write(&files[0], bytes).unwrap();
     assert_eq!(work(&Gpu::with(&cached).device).as_ref(), Ok(&expected));
-}
-
-/// Kernels that use f64 elsewhere, on a device that has none.
-fn predicates_without_f64(device: &Device) {
-    let arithmetic = Arithmetic::of(device).unwrap();
-    assert_eq!(arithmetic, Arithmetic::Integers);
-    let corners = [[0.1, 0.1], [0.3, 0.1], [0.1, 0.3], [0.3, 0.3], [9.0, 1e-9]].map(DVec2::from);
-    let quadruples = [[0, 1, 2, 3], [1, 3, 0, 2], [0, 1, 2, 4]];
-    let mut engine = Engine::new(device).unwrap();
-    let positions = Buffer::<DVec2>::new(device, "positions", corners.len()).unwrap();
-    let input = Buffer::<[u32; 4]>::new(device, "quadruples", quadruples.len()).unwrap();
-    let output = Buffer::<u32>::new(device, "signs", quadruples.len()).unwrap();
-    engine.upload(positions.view(), &corners).unwrap();
-    engine.upload(input.view(), &quadruples).unwrap();
-    let signs = Signs::new(device, arithmetic).unwrap();
-    let buffers = signs.buffers(quadruples.len()).unwrap();
-    let mut recording = Recording::new(device);
-    signs.record_must_flip(&mut recording, positions.view(), input.view(), output.view(), &buffers).unwrap();
-    engine.run(&recording, &RunOptions::default()).unwrap();
-    let expected = polder_flip::reference::must_flip_signs(&corners, &quadruples).unwrap();
-    assert_eq!(expected, [1, 0, 0]);
-    assert_eq!(engine.download_vec(output.view().cast::<i32>()).unwrap(), expected);
 }

@@ -6,6 +6,8 @@
 
 mod vulkan_support;
 
+use glam::DVec2;
+use polder_flip::gpu::{Arithmetic, Signs};
 use polder_vulkan::ash::{self, ext, vk};
 use polder_vulkan::gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use polder_vulkan::primitives::{Scan, Sort};
@@ -167,6 +169,28 @@ fn work(device: &Device) -> Result<Vec<u32>, Error> {
     engine.download_vec(buffer.view())
 }
 
+/// Kernels that use f64 elsewhere, on a device that has none.
+fn predicates_without_f64(device: &Device) {
+    let arithmetic = Arithmetic::of(device).unwrap();
+    assert_eq!(arithmetic, Arithmetic::Integers);
+    let corners = [[0.1, 0.1], [0.3, 0.1], [0.1, 0.3], [0.3, 0.3], [9.0, 1e-9]].map(DVec2::from);
+    let quadruples = [[0, 1, 2, 3], [1, 3, 0, 2], [0, 1, 2, 4]];
+    let mut engine = Engine::new(device).unwrap();
+    let positions = Buffer::<DVec2>::new(device, "positions", corners.len()).unwrap();
+    let input = Buffer::<[u32; 4]>::new(device, "quadruples", quadruples.len()).unwrap();
+    let output = Buffer::<u32>::new(device, "signs", quadruples.len()).unwrap();
+    engine.upload(positions.view(), &corners).unwrap();
+    engine.upload(input.view(), &quadruples).unwrap();
+    let signs = Signs::new(device, arithmetic).unwrap();
+    let buffers = signs.buffers(quadruples.len()).unwrap();
+    let mut recording = Recording::new(device);
+    signs.record_must_flip(&mut recording, positions.view(), input.view(), output.view(), &buffers).unwrap();
+    engine.run(&recording, &RunOptions::default()).unwrap();
+    let expected = polder_flip::reference::must_flip_signs(&corners, &quadruples).unwrap();
+    assert_eq!(expected, [1, 0, 0]);
+    assert_eq!(engine.download_vec(output.view().cast::<i32>()).unwrap(), expected);
+}
+
 /// Bytes that an allocator has given out.
 fn given_out(allocator: &Mutex<Allocator>) -> u64 {
     allocator.lock().unwrap().generate_report().total_allocated_bytes
@@ -181,6 +205,7 @@ fn everything_lent_is_used_and_nothing_of_it_destroyed() {
         let device = owner.lend(lent.cloned(), &[], None);
         assert_eq!(device.self_test().unwrap(), SelfTest::NoFloat64);
         assert_eq!(work(&device), expected);
+        predicates_without_f64(&device);
         // The owner's allocator holds what is held here, and no other does.
         let kept = Buffer::<u32>::new(&device, "kept", 1 << 20).unwrap();
         let held = given_out(&allocator);
