@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 /// The feature of the tests that need a Vulkan device.
-const GPU: &str = "polder-tests/gpu-tests";
+const GPU: &str = "polder-tests/gpu-tests,polder-cli/gpu-tests";
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -44,8 +44,9 @@ pub(crate) fn run(root: &Path, arguments: &Arguments) -> Result<(), String> {
     })?;
     step("tests", || execute(tests(root, &["--workspace"])))?;
     step("tests on a Vulkan device", || {
-        let mut command =
-            tests(root, &["--package", "polder-tests", "--features", GPU, "--test", "vulkan_*", "--test", "*_gpu*"]);
+        let packages = ["--package", "polder-tests", "--package", "polder-cli"];
+        let arguments = [&packages[..], &["--features", GPU, "--test", "vulkan_*", "--test", "*_gpu*"]].concat();
+        let mut command = tests(root, &arguments);
         command.envs(lavapipe::prepare(root)?);
         execute(command)
     })?;

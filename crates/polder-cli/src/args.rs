@@ -47,6 +47,8 @@ pub(crate) enum Command {
     Generate(GenerateArgs),
     /// Draw a stage on the way from pixels to triangles
     Draw(DrawArgs),
+    /// List the Vulkan devices of this machine, and what polder can use of them
+    Devices(DevicesArgs),
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -187,6 +189,13 @@ pub(crate) struct DigestArgs {
 
     #[command(flatten)]
     pub(crate) way: WayArgs,
+}
+
+#[derive(Args)]
+pub(crate) struct DevicesArgs {
+    /// Print the list as JSON
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

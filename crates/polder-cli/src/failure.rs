@@ -53,6 +53,24 @@ impl Failure {
         }
     }
 
+    /// An error of the compute engine.
+    pub(crate) fn of_engine(error: polder::vulkan::Error) -> Self {
+        use polder::vulkan::Error;
+        let kind = match &error {
+            Error::NoVulkan(_) | Error::NoDevice { .. } | Error::Unsupported { .. } | Error::NoValidation => {
+                "unsupported"
+            }
+            Error::OutOfMemory { .. } | Error::TooLarge { .. } => "out_of_memory",
+            Error::DeviceLost | Error::Timeout { .. } => "device_lost",
+            Error::Cancelled => "cancelled",
+            Error::Bound { .. } => "bound_exceeded",
+            _ => "internal",
+        };
+        // Loaders explain themselves in several lines.
+        let message = error.to_string();
+        Self::new(kind, message.lines().next().unwrap_or_default())
+    }
+
     /// 1 for bad input, 3 for files, device, resources and defects, 4 for cancelled.
     pub(crate) fn exit_code(&self) -> u8 {
         match self.kind {

@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod args;
+mod devices;
 mod draw;
 mod failure;
 mod generate;
@@ -24,6 +25,7 @@ fn main() -> ExitCode {
         Command::Digest(args) => triangulate::digest(&job, args),
         Command::Generate(args) => generate::generate(&job, args),
         Command::Draw(args) => draw::draw(&job, args),
+        Command::Devices(args) => devices::devices(&job, args),
     };
     job.done();
     result.unwrap_or_else(|failure| {

@@ -408,3 +408,26 @@ fn an_interrupt_cancels() {
     assert_eq!(error["kind"], "cancelled");
     assert!(names(folder.path()).is_empty());
 }
+
+/// Where nothing is installed, one line says so. Where something is, `tests/devices_gpu.rs` looks at what is said.
+#[test]
+fn devices_without_vulkan_are_an_error_in_one_line() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |args: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_polder"));
+        // No driver is found there, whatever is installed.
+        let nowhere = folder.path().join("nowhere");
+        let variables = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_ADD_DRIVER_FILES"];
+        command.args(args).envs(variables.map(|variable| (variable, &nowhere)));
+        command.output().unwrap()
+    };
+    let plain = run(&["devices"]);
+    assert_eq!((plain.status.code(), plain.stdout.len()), (Some(3), 0));
+    let said = String::from_utf8(plain.stderr).unwrap();
+    let said: Vec<&str> = said.lines().filter(|line| line.starts_with("polder: ")).collect();
+    assert!(said.len() == 1 && said[0].contains("Vulkan"), "{said:?}");
+    let error = run(&["devices", "--json", "--error-format", "json"]);
+    assert_eq!((error.status.code(), error.stdout.len()), (Some(3), 0));
+    let error: Value = serde_json::from_str(String::from_utf8(error.stderr).unwrap().lines().last().unwrap()).unwrap();
+    assert_eq!(error["kind"], "unsupported");
+}

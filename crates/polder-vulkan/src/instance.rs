@@ -1,6 +1,7 @@
 //! The loader, the instance, and what the validation layer says.
 
 use crate::Error;
+use crate::Selection;
 use crate::error::Called;
 use crate::info::DeviceInfo;
 use ash::{ext, vk};
@@ -109,6 +110,11 @@ impl Instance {
             .enumerate()
             .map(|(index, physical)| DeviceInfo::of(&self.inner.raw, physical, index))
             .collect())
+    }
+
+    /// The device that a selection takes, as [`Device::open_on`](crate::Device::open_on) does.
+    pub fn device(&self, selection: &Selection) -> Result<DeviceInfo, Error> {
+        Ok(selection.pick(&self.devices()?)?.clone())
     }
 
     /// What the validation layer has said since the instance was made.

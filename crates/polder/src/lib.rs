@@ -44,6 +44,8 @@ pub use options::{Backend, Options, ProgressFn};
 pub use polder_mesh::{
     Chains, ConstraintId, DVec2, Digest, Edge, EdgeId, MeshError, Progress, Pslg, TriangleId, Triangulation, VertexId,
 };
+/// The compute engine: what devices there are.
+pub use polder_vulkan as vulkan;
 pub use report::{ConstraintReport, Output, PointReport, Report, StageReport};
 pub use stages::{Stages, stages};
 /// The crates of the stages, whose types [`Stages`] holds.
