@@ -93,7 +93,7 @@ fn in_json(Found { info, opened, taken }: &Found) -> Value {
         "kind": kind(info),
         "driver": info.driver,
         "api_version": format!("{major}.{minor}.{patch}"),
-        "usable": matches!(opened.get("error"), None) && info.usable(),
+        "usable": opened.get("error").is_none() && info.usable(),
         "taken": taken,
         "missing": info.missing,
         "features": info.features.iter().map(ToString::to_string).collect::<Vec<_>>(),

@@ -10,6 +10,8 @@ use std::sync::Arc;
 
 /// Workgroups of a row of dispatches along x that every device takes.
 const ROW: u64 = 65535;
+/// Bytes that kernels reach from the address of an argument: shaders count offsets in 32 bits.
+pub(crate) const REACH: u64 = 1 << 32;
 /// Words that a workgroup of the kernels fills or copies.
 const WORDS_OF_A_GROUP: u32 = 16 * 256;
 
@@ -158,7 +160,7 @@ impl Recording {
     /// The place of a kernel's size that does so many bytes, if one can.
     fn place_of_words(&mut self, bytes: u64) -> Option<u32> {
         let words = bytes / 4;
-        let possible = bytes.is_multiple_of(4) && u32::try_from(words).is_ok();
+        let possible = bytes.is_multiple_of(4) && bytes <= REACH;
         possible.then(|| self.place(groups_for(words as usize, WORDS_OF_A_GROUP)))
     }
 
@@ -168,6 +170,11 @@ impl Recording {
         let name = kernel.inner.name;
         for touch in &touches {
             self.owns(name, &touch.buffer);
+            let bytes = touch.end - touch.start;
+            if bytes > REACH {
+                let buffer = touch.buffer.name;
+                self.fail(name, format!("{bytes} bytes of `{buffer}`; a kernel reaches {REACH} from an address"));
+            }
         }
         if !Arc::ptr_eq(&kernel.inner.device, &self.device) {
             self.fail(name, "the kernel is of another device".to_owned());

@@ -42,7 +42,7 @@ impl FindBounds {
     ///
     /// # Errors
     ///
-    /// If there are more than 2^30 points, as many as the stage takes.
+    /// If there are more than 2^28 points, as many as the stage takes.
     pub fn record(&self, recording: &mut Recording, points: View<'_, DVec2>) -> Result<BoundsRead, Error> {
         if points.len() > MOST_POINTS {
             let why = format!("{} points; at most {MOST_POINTS} are possible", points.len());

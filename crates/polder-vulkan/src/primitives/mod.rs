@@ -22,8 +22,8 @@ use crate::buffer::View;
 use crate::recording::Recording;
 use bytemuck::Pod;
 
-/// The most elements of a primitive.
-pub const MOST: usize = 1 << 31;
+/// The most elements of a primitive, of 4 bytes each; half as many of 8 bytes. Kernels reach no further from an address.
+pub const MOST: usize = 1 << 30;
 
 /// How many elements.
 #[derive(Debug, Clone, Copy)]

@@ -64,7 +64,7 @@ pub struct Reduce<T: ReduceValue> {
 }
 
 impl<T: ReduceValue> Reduce<T> {
-    /// For up to [`MOST`] values; holds a few KiB.
+    /// For up to [`MOST`] values, or half as many of 8 bytes; holds a few KiB.
     pub fn new(device: &Device, operation: Operation) -> Result<Self, Error> {
         let constants = [("WORKGROUP", WORKGROUP as u32), ("OPERATION", operation as u32)];
         Ok(Reduce {
@@ -82,7 +82,7 @@ impl<T: ReduceValue> Reduce<T> {
         result: View<'a, T>,
     ) {
         let count = count.into();
-        if !count.fits(recording, NAME, MOST)
+        if !count.fits(recording, NAME, MOST / (size_of::<T>() / 4))
             || !holds(recording, NAME, values, count.limit)
             || !holds(recording, NAME, result, 1)
         {

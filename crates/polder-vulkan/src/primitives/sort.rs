@@ -3,7 +3,7 @@
 //! A pass for each 8 bits: count the digits of each tile, scan the counts digit by digit, move each tile's keys and values
 //! to their places. The middle step is [`Scan`].
 
-use super::{Copier, Count, Scan, holds};
+use super::{Copier, Count, MOST, Scan, holds};
 use crate::Error;
 use crate::buffer::{Buffer, View};
 use crate::device::Device;
@@ -20,8 +20,6 @@ use bytemuck::Pod;
 const NAME: &str = "sort";
 const DIGITS: usize = 256;
 const DIGIT_BITS: u32 = 8;
-/// The most keys: the counts of all tiles have to fit a scan.
-const MOST: usize = 1 << 30;
 
 /// Keys that can be sorted: u32 and u64.
 pub trait SortKey: Pod + sealed::Key {}
@@ -140,14 +138,14 @@ impl<K: SortKey> Sort<K> {
             .and(Scan::estimate(counts))
     }
 
-    /// For up to `capacity` keys, at most 2^30.
+    /// For up to `capacity` keys, at most [`MOST`], or half as many of 8 bytes.
     pub fn new(device: &Device, capacity: usize) -> Result<Self, Error> {
         Sort::with_shape(device, capacity, SortShape::for_device::<K>(device))
     }
 
     /// With workgroups of another shape: for measurements.
     pub fn with_shape(device: &Device, capacity: usize, shape: SortShape) -> Result<Self, Error> {
-        let capacity = capacity.min(MOST);
+        let capacity = capacity.min(MOST / (size_of::<K>() / 4));
         let subgroup = device.info().limits.subgroup;
         let (workgroup, items) = (("WORKGROUP", shape.workgroup), ("ITEMS", shape.items));
         let pool = ("POOL", shape.pool::<K>(subgroup));
