@@ -1,9 +1,11 @@
-//! What `cargo xtask bench` runs: polder against spade and delaunator in one run, on the same inputs.
+//! What `cargo xtask bench` runs: polder against spade and delaunator in one run, on the same inputs; and, asked for by
+//! name, its stages on a Vulkan device.
 //!
 //! Every case runs all programs in turn, several times, and the median counts. Reading and copying the input and freeing
 //! the result are not timed. Peak memory is measured in a process of its own for each case and program.
 #![forbid(unsafe_code)]
 
+mod gpu;
 mod inputs;
 mod machine;
 mod memory;
@@ -19,15 +21,18 @@ use std::process::ExitCode;
 #[derive(Parser)]
 #[command(name = "cargo xtask bench", about = "polder against spade and delaunator, side by side")]
 struct Arguments {
-    /// What to run; nothing means everything.
+    /// What to run; nothing means everything that needs no Vulkan device.
     #[arg(value_enum)]
     what: Vec<What>,
     /// The size of the cases in points.
     #[arg(long, default_value_t = 1_000_000)]
     points: usize,
-    /// How many times each program runs on each case.
-    #[arg(long, default_value_t = 5)]
-    runs: usize,
+    /// How many times each program runs on each case: 5, and 10 on a Vulkan device, unless told.
+    #[arg(long)]
+    runs: Option<usize>,
+    /// Does not hold results of a Vulkan device against the reference, which takes a while.
+    #[arg(long)]
+    unchecked: bool,
     /// A small size and one run, to see that all works.
     #[arg(long)]
     quick: bool,
@@ -47,6 +52,8 @@ enum What {
     Degenerate,
     /// Peak memory.
     Memory,
+    /// The digital Voronoi diagram on the Vulkan device that `POLDER_DEVICE` names, or the best one.
+    Voronoi,
 }
 
 fn main() -> ExitCode {
@@ -61,7 +68,8 @@ fn main() -> ExitCode {
 
 fn run(mut arguments: Arguments) -> Result<(), String> {
     if arguments.quick {
-        (arguments.points, arguments.runs) = (arguments.points.min(50_000), 1);
+        arguments.points = arguments.points.min(50_000);
+        arguments.runs = Some(1);
     }
     if let Some(case) = &arguments.peak_of {
         let [input, program] = case.as_slice() else { return Err("an input and a program are wanted".into()) };
@@ -69,24 +77,29 @@ fn run(mut arguments: Arguments) -> Result<(), String> {
         return Ok(());
     }
     let wanted = |what| arguments.what.is_empty() || arguments.what.contains(&what);
+    let runs = arguments.runs.unwrap_or(5);
     let programs = Program::all();
-    let mut results = report::Results::new(arguments.points, arguments.runs);
+    let mut results = report::Results::new(arguments.points, runs);
 
     if wanted(What::Peers) {
         for input in Input::PEERS {
-            results.peers.push(timing::compare(input, arguments.points, arguments.runs, &programs)?);
+            results.peers.push(timing::compare(input, arguments.points, runs, &programs)?);
         }
     }
     if wanted(What::Degenerate) {
         for (input, share) in Input::DEGENERATE {
             let points = arguments.points / share;
-            results.degenerate.push(timing::against_uniform(input, points, arguments.runs)?);
+            results.degenerate.push(timing::against_uniform(input, points, runs)?);
         }
     }
     if wanted(What::Memory) {
         for input in Input::PEERS {
             results.memory.push(memory::compare(input, arguments.points, &programs)?);
         }
+    }
+    if arguments.what.contains(&What::Voronoi) {
+        let runs = arguments.runs.unwrap_or(10);
+        results.voronoi = Some(gpu::voronoi::run(runs, arguments.quick, !arguments.unchecked)?);
     }
     if arguments.json {
         results.print_json()

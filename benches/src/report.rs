@@ -14,12 +14,13 @@ pub(crate) struct Results {
     pub(crate) peers: Vec<timing::Comparison>,
     pub(crate) degenerate: Vec<Vec<timing::Ratio>>,
     pub(crate) memory: Vec<memory::Comparison>,
+    pub(crate) voronoi: Option<crate::gpu::voronoi::Results>,
 }
 
 impl Results {
     pub(crate) fn new(points: usize, runs: usize) -> Self {
         let (peers, degenerate, memory) = (Vec::new(), Vec::new(), Vec::new());
-        Self { machine: Machine::this(), points, runs, peers, degenerate, memory }
+        Self { machine: Machine::this(), points, runs, peers, degenerate, memory, voronoi: None }
     }
 
     pub(crate) fn print_json(&self) {
@@ -63,6 +64,9 @@ impl Results {
                 (label(case.input, case.points), case.peaks.iter().map(cell).collect())
             });
             table(rows.collect());
+        }
+        if let Some(voronoi) = &self.voronoi {
+            voronoi.print();
         }
     }
 }

@@ -102,7 +102,7 @@ fn verified(pslg: &Pslg, made: &Made) -> Result<(), String> {
     if verdict.is_canonical() { Ok(()) } else { Err(verdict.to_string()) }
 }
 
-fn median(times: &[f64]) -> f64 {
+pub(crate) fn median(times: &[f64]) -> f64 {
     let mut times = times.to_vec();
     times.sort_by(f64::total_cmp);
     let middle = times.len() / 2;
