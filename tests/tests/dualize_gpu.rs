@@ -5,10 +5,9 @@
 mod voronoi_gpu_support;
 mod vulkan_support;
 
-use polder_dualize::DVec2;
-use polder_dualize::DualizeError;
 use polder_dualize::gpu::dualize::{Counts, Input, Output, Stage};
 use polder_dualize::reference::{certify, dual};
+use polder_dualize::{DVec2, DualizeError, Dualized};
 use polder_mesh::{GHOST, GhostMesh};
 use polder_tests::families;
 use polder_voronoi::{Diagram, Options, Resolution, Sites, reference};
@@ -47,7 +46,7 @@ fn certified(mesh: &GhostMesh, sites: &Sites) -> Result<(), DualizeError> {
 
 fn assert_dual(gpu: &mut Gpu, stage: &Stage, name: &str, diagram: &Diagram, sites: &Sites) {
     let ([triangles, links], counts) = dualized(gpu, stage, diagram, sites);
-    let (mesh, necks) = dual(diagram, sites).unwrap();
+    let Dualized { mesh, necks, .. } = dual(diagram, sites).unwrap();
     assert!(triangles == mesh.triangles, "{name}: triangles");
     assert!(links == mesh.links, "{name}: links");
     let ghosts = mesh.triangles.iter().filter(|corners| corners.contains(&GHOST)).count() as u64;
@@ -129,7 +128,7 @@ fn what_no_flooding_gives_is_an_error() {
                     assert!(triangles.is_empty());
                     kinds[kind] += 1;
                 }
-                (Ok((mesh, _)), _) => assert!(triangles == mesh.triangles, "{seed}"),
+                (Ok(expected), _) => assert!(triangles == expected.mesh.triangles, "{seed}"),
                 (Err(expected), found) => panic!("{seed}: {expected}, not {found:?}"),
             }
         }
@@ -144,7 +143,7 @@ fn triangles_that_are_not_counterclockwise_are_found() {
         let mut sites = anywhere([60, 60], 500, 3);
         let diagram = reference::flooding::flood(&sites).unwrap().diagram;
         sites.pixels.swap(100, 300);
-        let (mesh, _) = dual(&diagram, &sites).unwrap();
+        let Dualized { mesh, .. } = dual(&diagram, &sites).unwrap();
         let has = |t: &usize| mesh.triangles[*t].iter().any(|v| [100, 300].contains(v));
         let expected = certified(&mesh, &sites).unwrap_err();
         assert!(matches!(expected, DualizeError::NotCounterclockwise { triangle, .. } if has(&triangle)));
@@ -175,7 +174,7 @@ fn a_recording_serves_again() {
             gpu.engine.upload(pixels.view(), &sites.pixels).unwrap();
             gpu.engine.upload(count.view(), &[sites.count as u32]).unwrap();
             let report = gpu.run(&recording);
-            let (mesh, necks) = dual(&diagram, &sites).unwrap();
+            let Dualized { mesh, necks, .. } = dual(&diagram, &sites).unwrap();
             let found = read.result(&report).unwrap();
             assert_eq!((found.necks, found.triangles), (necks, mesh.slots() as u64));
             assert!(gpu.fetch(triangles.view())[..mesh.slots()] == mesh.triangles, "{points}");

@@ -17,7 +17,7 @@ fn main() -> Result<(), DualizeError> {
     println!("{}", voronoi.diagram.letters(sites));
 
     // Stage 2: its dual, with sites at the centers of their pixels.
-    let dualized = reference::dualize(&voronoi.diagram, sites)?;
+    let dualized = reference::dual(&voronoi.diagram, sites)?;
     println!("dualized: {dualized}");
 
     // Stage 3: sites move to their true positions; those that cannot are taken out.

@@ -61,7 +61,7 @@ fn measure(device: &Device, count: usize) -> Result<(), Box<dyn std::error::Erro
     let sites = Sites { size, order, count: counts.sites as usize, pixels };
     let colors = engine.download_vec(grid.colors())?;
     let diagram = Diagram { width: size[0], height: size[1], colors, debris: Vec::new() };
-    let (expected, _) = dual(&diagram, &sites)?;
+    let expected = dual(&diagram, &sites)?.mesh;
     if mesh.download(&mut engine)? != expected {
         return Err("the device gives another result".into());
     }

@@ -2,7 +2,7 @@
 //!
 //! | stage | in | out |
 //! |---|---|---|
-//! | 2, [`reference::dualize`] | a [`Diagram`](polder_voronoi::Diagram) and its [`Sites`](polder_voronoi::Sites) | [`Dualized`]: a triangulation of the sites at their pixels, its hull convex |
+//! | 2, [`reference::dual`] | a [`Diagram`](polder_voronoi::Diagram) and its [`Sites`](polder_voronoi::Sites) | [`Dualized`]: a triangulation of the sites at their pixels; [`reference::dualize`] also makes its hull convex |
 //! | 3, [`reference::shift`] | that mesh, the pixel centers, the true positions | [`Shifted`]: a triangulation of most sites at their true positions, and an heir for each site taken out |
 //! | 4, [`reference::insert`] | that mesh, all positions, the points to be put in and where to start looking for each | [`Inserted`]: a triangulation of all distinct points, and the vertex that each point became |
 //!
@@ -16,7 +16,7 @@
 //!
 //! - Every stage is a pure function of its input, and every decision that needs more than an exact sign is integer
 //!   arithmetic.
-//! - Each stage ends with a certificate, checked in exact arithmetic: every finite triangle is strictly
+//! - Stages 3 and 4, and [`reference::dualize`], end with a certificate, checked in exact arithmetic: every finite triangle is strictly
 //!   counterclockwise, and the hull is nowhere reflex and winds round exactly once. Together these say that the
 //!   triangles cover the convex hull without overlap (see [`reference::certify`]). What fails it is an error, never a
 //!   result.

@@ -5,7 +5,7 @@ use polder_flip::FlipReport;
 use polder_mesh::GhostMesh;
 use std::fmt;
 
-/// What [`reference::dualize`](crate::reference::dualize) gives.
+/// What [`reference::dual`](crate::reference::dual) and [`reference::dualize`](crate::reference::dualize) give.
 ///
 /// Text form: the counts in one line, then the mesh, one triangle a line.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub struct Dualized {
     pub necks: u64,
     /// Finite triangles before the hull was closed.
     pub open: usize,
-    /// The ghost flips that closed it.
+    /// The ghost flips that closed it, if it is closed.
     pub hull: FlipReport,
 }
 

@@ -83,8 +83,8 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
         sites.pixels[..sites.count].iter().map(|pixel| voronoi.mapping.center(pixel.map(u32::from))).collect();
 
     monitor.step("dualize", 1, STAGES)?;
-    let dualized = dualize::dualize(&voronoi.diagram, sites)?;
-    watch.stage("dualize", [("necks", dualized.necks), ("hull_flips", dualized.hull.flips)]);
+    let dualized = dualize::dual(&voronoi.diagram, sites)?;
+    watch.stage("dualize", [("necks", dualized.necks)]);
 
     monitor.step("shift", 2, STAGES)?;
     let shifted = dualize::shift(dualized.mesh.clone(), &centers, &positions)?;

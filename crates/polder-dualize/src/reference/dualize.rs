@@ -13,6 +13,10 @@
 //! 4. Close the hull: ghost flips, with sites at their pixels.
 //! 5. Check the certificate.
 //!
+//! [`dualize`] does all of it, for whoever wants the digital Delaunay triangulation. The stages in a row stop after step
+//! 3, at [`dual`]: stage 3 would have to close the hull again anyway, after it has moved the sites, and its proof asks for
+//! no more than the four monotone parts below.
+//!
 //! Following a border needs no memory and no hashing. At a corner with two borders there is one way on. At a neck, one
 //! of the two colors is on a single pixel there, and the border bends around that pixel. It always ends: read backwards
 //! the way is unique as well, so it cannot close up without passing the vertex that it left. All ways together are as
@@ -27,15 +31,16 @@
 //! both sides, a site whose region touches no vertex inside the grid gets two ghost triangles, and a grid one pixel
 //! high needs nothing special.
 //!
-//! The hull is then the sequence of colors along the border. Ghost flips close it (rather than a scan over the
-//! border, as in [QCT]: flips run in parallel, and later stages need them anyway). Why they may: along the lower side
-//! of the grid the x coordinates of the colors' sites ascend, and below the chain of these sites there is no site,
-//! because a circle about a point of the border through two successive sites is empty, and so is what lies below it.
-//! So a triangle that is cut off by a reflex vertex of the chain holds no site, the chain that remains has the same
-//! property, and so on; likewise for the other three sides. At the site of a grid's corner two chains meet; what is
-//! cut off there lies below the one, right of the other, or nearer to the corner than its nearest site, and is empty
-//! too. Flooding differs from the nearest-site coloring in debris alone, and the certificate does not rely on any of
-//! this.
+//! The hull is then the sequence of colors along the border: four parts, lower, right, upper and left, one for each side
+//! of the grid, each strictly monotone in its direction, neighbors having the site of the grid's corner in common. Ghost
+//! flips close it (rather than a scan over the border, as in [QCT]: flips run in parallel, and later stages need them
+//! anyway). Why they may: along the lower side of the grid the x coordinates of the colors' sites ascend, and below the
+//! chain of these sites there is no site, because a circle about a point of the border through two successive sites is
+//! empty, and so is what lies below it. So a triangle that is cut off by a reflex vertex of the chain holds no site, the
+//! chain that remains has the same property, and so on; likewise for the other three sides. At the site of a grid's corner
+//! two chains meet; what is cut off there lies below the one, right of the other, or nearer to the corner than its nearest
+//! site, and is empty too. Flooding differs from the nearest-site coloring in debris alone, and the certificate does not
+//! rely on any of this.
 //!
 //! Departures: [QCT] counts every corner with three colors as a vertex, necks too, which [CET] does not; it links
 //! triangles through lists of the triangles around each point; and it puts a polygon of fake points around the sites.
@@ -45,6 +50,7 @@ use super::certify::certify;
 use super::corners::{Corner, Kind, colors, kind};
 use crate::{DualizeError, Dualized};
 use glam::DVec2;
+use polder_flip::FlipReport;
 use polder_flip::reference::close_hull;
 use polder_mesh::{GhostMesh, NONE};
 use polder_voronoi::{Diagram, Sites};
@@ -62,20 +68,20 @@ const LONGEST_BORDER: u32 = 1 << 22;
 /// [`DualizeError::Mismatch`] if the diagram and the sites do not belong together. Every other error means that
 /// flooding did not make the diagram.
 pub fn dualize(diagram: &Diagram, sites: &Sites) -> Result<Dualized, DualizeError> {
-    let (mut mesh, necks) = dual(diagram, sites)?;
+    let mut dualized = dual(diagram, sites)?;
     let positions: Vec<_> = sites.pixels[..sites.count].iter().map(|&p| DVec2::from(p.map(f64::from))).collect();
-    let open = mesh.finite().count();
-    let hull = close_hull(&mut mesh, &positions)?;
-    certify(&mesh, &positions, "dualize")?;
-    Ok(Dualized { mesh, necks, open, hull })
+    dualized.hull = close_hull(&mut dualized.mesh, &positions)?;
+    certify(&dualized.mesh, &positions, "dualize")?;
+    Ok(dualized)
 }
 
-/// Steps 1 to 3: the dual as it is, its hull not yet convex, and the number of necks passed over.
+/// Steps 1 to 3: the dual as it is, its hull not yet convex. This is what stage 3 takes, which closes the hull once its
+/// sites have moved.
 ///
 /// # Errors
 ///
 /// As [`dualize`].
-pub fn dual(diagram: &Diagram, sites: &Sites) -> Result<(GhostMesh, u64), DualizeError> {
+pub fn dual(diagram: &Diagram, sites: &Sites) -> Result<Dualized, DualizeError> {
     check(diagram, sites)?;
     // Step 1.
     let mut necks = 0;
@@ -100,7 +106,8 @@ pub fn dual(diagram: &Diagram, sites: &Sites) -> Result<(GhostMesh, u64), Dualiz
         return Err(DualizeError::CrossingNecks { x, y });
     }
     each_site_is_seen(&mesh, sites.count)?;
-    Ok((mesh, necks))
+    let open = mesh.finite().count();
+    Ok(Dualized { mesh, necks, open, hull: FlipReport::default() })
 }
 
 /// The triangles of a sphere with the sites and the ghost as vertices; one site alone has no edge and no triangle.

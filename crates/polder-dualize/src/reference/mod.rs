@@ -1,6 +1,6 @@
 //! The stages in plain Rust on slices: the same rounds with the same winners as on any other device.
 //!
-//! [`dualize()`], [`shift()`] and [`insert()`] in order; [`triangulate`] is all of them after stage 1.
+//! [`dual()`], [`shift()`] and [`insert()`] in order; [`triangulate`] is all of them after stage 1.
 
 mod bootstrap;
 mod certify;

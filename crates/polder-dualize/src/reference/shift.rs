@@ -6,7 +6,8 @@
 //! 2. *Unpin.* Each pinned site is tried once more at its true position, all others staying where they are; it is freed
 //!    if the finite triangles around it stay counterclockwise. A site is tried in the round in which it has the least
 //!    priority among the pinned sites around it that have not been tried.
-//! 3. *Close.* Ghost flips until the hull is convex: moving the sites may have made it reflex in places.
+//! 3. *Close.* Ghost flips until the hull is convex. The dual's is reflex where the sides of the grid made it so, and
+//!    moving the sites bends any.
 //! 4. *Take out* the sites that are still pinned; see the module `takeout`.
 //! 5. Check the certificate.
 //!
@@ -31,10 +32,14 @@
 //!
 //! Closing the hull keeps that. A ghost flip at a strictly reflex vertex fills in its outer angle exactly, so the vertex
 //! becomes an inner one with angle 2π. What could go wrong is that the new triangle's angle is larger than the room
-//! outside one of its other two vertices. It is not, along any part of the hull that is strictly monotone in x or in
-//! y, because there the next vertex lies beyond the triangle. The hull before the move was convex: its lower, right,
-//! upper and left parts are strictly monotone in their direction, they overlap or meet in one vertex, and they still
-//! do so in mixed positions. The certificate checks the end of it.
+//! outside one of its other two vertices. The hull before the move has four parts, lower, right, upper and left, that are
+//! strictly monotone in their direction, and overlap or have a vertex in common: that of the dual has, along the sides of
+//! the grid (see the module `dualize`), and so has a convex one. Monotone parts are so in mixed positions as well. Inside
+//! a part the new triangle has room, because there the next vertex lies beyond it, and the part that remains is
+//! monotone. Where two parts meet, say the left one, which comes from above, and the lower one, which goes on to the
+//! right, the angle inside is that from the way on to the way back, between -π/2 and 3π/2. It is reflex only if the hull
+//! comes from the upper left and goes on to the lower right; the edge that the flip puts there goes right and down, so
+//! the two parts then overlap in it. The certificate checks the end of it.
 //!
 //! If all sites lie on one line of the grid there is no finite triangle to pin for. The chain is strictly monotone, so
 //! its two sides are closed as above; it stays a chain if the true positions are on one line as well.

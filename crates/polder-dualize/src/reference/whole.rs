@@ -1,6 +1,6 @@
 //! Stages 1 to 4 in a row.
 
-use super::{dualize, insert, shift};
+use super::{dual, insert, shift};
 use crate::{DualizeError, Dualized, Inserted, Shifted};
 use glam::DVec2;
 use polder_mesh::NONE;
@@ -11,7 +11,7 @@ use polder_voronoi::{Diagram, Options, Sites};
 pub struct Phases {
     /// Stage 1: the grid, the renumbering and the diagram.
     pub voronoi: polder_voronoi::reference::Output,
-    /// Stage 2.
+    /// Stage 2, its hull not yet convex: stage 3 closes it.
     pub dualized: Dualized,
     /// Stage 3.
     pub shifted: Shifted,
@@ -39,7 +39,7 @@ impl Phases {
 pub fn triangulate(points: &[DVec2], options: &Options) -> Result<Phases, DualizeError> {
     let voronoi = polder_voronoi::reference::diagram(points, options)?;
     let positions: Vec<DVec2> = voronoi.sites.order.iter().map(|&i| points[i as usize]).collect();
-    let dualized = dualize(&voronoi.diagram, &voronoi.sites)?;
+    let dualized = dual(&voronoi.diagram, &voronoi.sites)?;
     let shifted = shift(dualized.mesh.clone(), &centers(&voronoi), &positions)?;
     let (missing, starts) = points_to_insert(&voronoi.diagram, &voronoi.sites, &shifted);
     let inserted = insert(shifted.mesh.clone(), &positions, &missing, &starts)?;

@@ -106,7 +106,7 @@ proptest! {
     fn dual_is_the_definition(sites in strategy()) {
         let diagram = flooded(&sites);
         prop_assert_eq!(&diagram, &Diagram { debris: diagram.debris.clone(), ..flood(&sites).unwrap().diagram });
-        let (mesh, _) = reference::dual(&diagram, &sites).unwrap();
+        let mesh = reference::dual(&diagram, &sites).unwrap().mesh;
         let mut ours = finite(&mesh);
         prop_assert_eq!(&ours, &triangles(&diagram, false).into_iter().map(rotated(&ours)).collect::<Vec<_>>());
         ours.iter_mut().for_each(|t| t.sort_unstable());
