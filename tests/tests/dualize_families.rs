@@ -109,12 +109,12 @@ fn counts() {
         let (d, s, i) = (&phases.dualized, &phases.shifted, &phases.inserted);
         let [pin, unpin, out] = s.rounds;
         lines += &format!(
-            "{name}: {} sites, {} missing; {} necks, {} hull flips; {} pinned, {} taken out, rounds {pin} {unpin} {out}; \
+            "{name}: {} sites, {} missing; {} necks; {} hull flips, {} pinned, {} taken out, rounds {pin} {unpin} {out}; \
              {} inserted, {} duplicates, {} rounds, {} flips{}\n",
             phases.voronoi.counts.sites,
             phases.voronoi.counts.missing,
             d.necks,
-            d.hull.flips,
+            s.hull.flips,
             s.bad,
             s.taken_out().count(),
             i.inserted,

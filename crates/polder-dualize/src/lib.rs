@@ -16,10 +16,10 @@
 //!
 //! - Every stage is a pure function of its input, and every decision that needs more than an exact sign is integer
 //!   arithmetic.
-//! - Stages 3 and 4, and [`reference::dualize`], end with a certificate, checked in exact arithmetic: every finite triangle is strictly
-//!   counterclockwise, and the hull is nowhere reflex and winds round exactly once. Together these say that the
-//!   triangles cover the convex hull without overlap (see [`reference::certify`]). What fails it is an error, never a
-//!   result.
+//! - Stages 3 and 4, and [`reference::dualize`], end with a certificate, checked in exact arithmetic: every finite
+//!   triangle is strictly counterclockwise, and the hull is nowhere reflex and winds round exactly once. Together these
+//!   say that the triangles cover the convex hull without overlap (see [`reference::certify`]). What fails it is an
+//!   error, never a result.
 //! - Sites or points that all lie on one line are no error: the mesh is then a chain, with ghost triangles on both
 //!   sides of each of its edges and no finite one; with fewer than two distinct points it is empty.
 //!
