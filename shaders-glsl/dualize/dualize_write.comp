@@ -1,6 +1,6 @@
 // Dualize, 3 of 3: writes the triangles of each digital Voronoi vertex, and links them by following the borders that leave
 // it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
-// invocations; each half-edge is written by one of them.
+// invocations.
 //
 // The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead.
 #version 460
@@ -68,34 +68,54 @@ uint side(uint r, bool is_second, uint k) {
     return r + 1u + (k + 1u) % 3u & 3u;
 }
 
+// The pixels ahead of a corner, left and right.
+uvec2 ahead(ivec2 at, ivec2 step) {
+    // Where they lie of the corner: 0 or -1.
+    int sum = step.x + step.y - 1 >> 1;
+    ivec2 left = at + ivec2(step.x - step.y - 1 >> 1, sum);
+    ivec2 right = at + ivec2(sum, step.y - step.x - 1 >> 1);
+    return uvec2(
+        color_of(colors, uint(left.x), uint(left.y), width, height),
+        color_of(colors, uint(right.x), uint(right.y), width, height));
+}
+
+// Goes to the next corner of a border with these colors left and right, and turns with it; whether it is a vertex.
+bool reaches(uvec2 sides, inout ivec2 at, inout ivec2 step) {
+    at += step;
+    uvec2 found = ahead(at, step);
+    if (found.x == sides.y) {
+        step = ivec2(-step.y, step.x);
+        return false;
+    }
+    if (found.y == sides.x) {
+        step = ivec2(step.y, -step.x);
+        return false;
+    }
+    return found != sides;
+}
+
 // The half-edge where the border that leaves a corner by side s ends.
-uint follow(uint x, uint y, uint s, uint left, uint right) {
-    uint heading = s;
-    for (uint step = 0u; step < LONGEST; step++) {
-        x += uint(heading == 1u) - uint(heading == 3u);
-        y += uint(heading == 2u) - uint(heading == 0u);
-        // South, east, north, west: where the pixels ahead lie of the corner.
-        uint left_x = heading == 0u || heading == 1u ? x : x - 1u;
-        uint left_y = heading == 1u || heading == 2u ? y : y - 1u;
-        uint right_x = heading == 1u || heading == 2u ? x : x - 1u;
-        uint right_y = heading == 2u || heading == 3u ? y : y - 1u;
-        uint ahead_left = color_of(colors, left_x, left_y, width, height);
-        uint ahead_right = color_of(colors, right_x, right_y, width, height);
-        if (ahead_left == right) {
-            heading = heading + 1u & 3u;
-        } else if (ahead_right == left) {
-            heading = heading + 3u & 3u;
-        } else if (ahead_left != left || ahead_right != right) {
-            // A vertex, reached by the opposite side; counterclockwise from there left, right, ahead right, ahead left.
-            uint arrived = heading + 2u & 3u;
-            uint r = right == ahead_right ? 1u : ahead_right == ahead_left ? 2u : ahead_left == left ? 3u : 4u;
-            uint word = y * words_in_row(width) + x / 32u;
-            uvec2 before = vertices.at[word] & ((1u << (x & 31u)) - 1u);
-            uint slot = first.at[word] + triangles_of(before);
-            return half_edge(slot, r == 4u ? 4u : arrived + r & 3u, arrived);
+uint follow(uint x, uint y, uint s, uvec2 sides) {
+    // South, east, north, west as a step.
+    ivec2 step = s == 0u ? ivec2(0, -1) : s == 1u ? ivec2(1, 0) : s == 2u ? ivec2(0, 1) : ivec2(-1, 0);
+    ivec2 at = ivec2(x, y);
+    // Several steps a turn, since llvmpipe ends all loops of an invocation after 65535 turns.
+    uint steps = 0u;
+    while (!reaches(sides, at, step) && !reaches(sides, at, step) && !reaches(sides, at, step)
+        && !reaches(sides, at, step)) {
+        steps += 4u;
+        if (steps >= LONGEST) {
+            return GHOST;
         }
     }
-    return GHOST;
+    // It is reached by the opposite side; counterclockwise from there left, right, ahead right, ahead left.
+    uvec2 found = ahead(at, step);
+    uint arrived = step.y != 0 ? uint(1 - step.y) : uint(2 + step.x);
+    uint r = sides.y == found.y ? 1u : found.y == found.x ? 2u : found.x == sides.x ? 3u : 4u;
+    uint word = uint(at.y) * words_in_row(width) + uint(at.x) / 32u;
+    uvec2 before = vertices.at[word] & ((1u << (uint(at.x) & 31u)) - 1u);
+    uint slot = first.at[word] + triangles_of(before);
+    return half_edge(slot, r == 4u ? 4u : arrived + r & 3u, arrived);
 }
 
 void main() {
@@ -138,9 +158,7 @@ void main() {
     }
     barrier();
     uint in_tile = words[WORDS - 1u].w + triangles_of(words[WORDS - 1u].xy);
-    for (uint item = rank; item < 3u * in_tile; item += WORKGROUP) {
-        uint triangle = item / 3u;
-        uint k = item % 3u;
+    for (uint triangle = rank; triangle < in_tile; triangle += WORKGROUP) {
         uint corner = places[triangle] >> 1u;
         bool is_second = (places[triangle] & 1u) != 0u;
         uvec4 word = words[corner / 32u];
@@ -158,19 +176,21 @@ void main() {
         } else {
             corners = uvec3(c[r + 1u & 3u], c[r + 2u & 3u], c[r + 3u & 3u]);
         }
-        uint h = 3u * slot + k;
-        triangles.at[h] = corners[k];
-        if (r == 4u && k == (is_second ? 2u : 1u)) {
-            links.at[h] = is_second ? h - 4u : h + 4u;
-        } else {
-            uint s = side(r, is_second, k);
-            uint link = follow(x, y, s, c[s + 1u & 3u], c[s]);
+        [[unroll]] for (uint k = 0u; k < 3u; k++) {
+            uint h = 3u * slot + k;
+            triangles.at[h] = corners[k];
+            if (r == 4u && k == (is_second ? 2u : 1u)) {
+                links.at[h] = is_second ? h - 4u : h + 4u;
+                continue;
+            }
+            uvec2 sides = uvec2(corners[(k + 2u) % 3u], corners[(k + 1u) % 3u]);
+            uint link = follow(x, y, side(r, is_second, k), sides);
             links.at[h] = link;
             if (link == GHOST) {
                 atomicMin(lost.at[0], y * (width + 1u) + x);
             }
         }
-        if (k == 0u && corners.x != GHOST && corners.y != GHOST && corners.z != GHOST) {
+        if (corners.x != GHOST && corners.y != GHOST && corners.z != GHOST) {
             uvec3 at = uvec3(pixels.at[corners.x], pixels.at[corners.y], pixels.at[corners.z]);
             ivec2 a = ivec2(at.y & 0xffffu, at.y >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);
             ivec2 b = ivec2(at.z & 0xffffu, at.z >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);

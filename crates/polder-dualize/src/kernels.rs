@@ -133,7 +133,7 @@ impl Shader for DualizeCount {
 
 /// Dualize, 3 of 3: writes the triangles of each digital Voronoi vertex, and links them by following the borders that leave
 /// it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
-/// invocations; each half-edge is written by one of them.
+/// invocations.
 ///
 /// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead.
 #[derive(Debug, Clone, Copy)]
@@ -188,7 +188,7 @@ impl Shader for DualizeWrite {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["GroupNonUniform", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "d90028c9808df6bd7c18c43a5bc6e545e9af1c8d7f40cec0460afc62a560ce53",
+        source_hash: "5690c1fbfde59451d104022b5efac082b76443bd2d40bc44b1d02fdc534ebd2f",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
