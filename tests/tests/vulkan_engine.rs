@@ -259,6 +259,40 @@ fn every_kernel_is_timed_by_name() {
 }
 
 #[test]
+fn sections_are_timed_across_submissions() {
+    let mut gpu = Gpu::open();
+    let scan = Scan::new(&gpu.device, 5000).unwrap();
+    let (buffer, counter) = (gpu.buffer(&words(1, 5000)), gpu.buffer(&[0_u32; 4]));
+    for ahead in [false, true] {
+        let mut recording = gpu.recording();
+        scan.record(&mut recording, 5000, buffer.view(), buffer.view(), None);
+        recording.section("first");
+        scan.record(&mut recording, 5000, buffer.view(), buffer.view(), None);
+        recording.section("loop");
+        let body = |round: &mut Recording| {
+            round.section("nothing");
+            scan.record(round, 5000, buffer.view(), buffer.view(), None);
+        };
+        match ahead {
+            true => recording.repeat_ahead("loop", counter.view(), 3, 2, 2, body),
+            false => recording.repeat("loop", counter.view(), 3, 2, body),
+        }
+        recording.section("last");
+        scan.record(&mut recording, 5000, buffer.view(), buffer.view(), None);
+        for timestamps in [false, true] {
+            let options = RunOptions { timestamps, ..RunOptions::default() };
+            let report = gpu.engine.run(&recording, &options).unwrap();
+            let found: Vec<_> = report.sections.iter().map(|(name, timing)| (name, timing.total_ns > 0)).collect();
+            assert_eq!(found, [("first", true), ("last", true), ("loop", true)]);
+            assert_eq!(
+                report.timings.get("scan_tiles").map_or(0, |timing| timing.count),
+                if timestamps { 5 } else { 0 }
+            );
+        }
+    }
+}
+
+#[test]
 fn more_commands_than_one_submission_can_time() {
     let mut gpu = Gpu::open();
     let buffer = gpu.buffer(&[0_u32; 4]);

@@ -55,6 +55,8 @@ pub struct RunReport {
     pub rounds: Vec<(&'static str, u32)>,
     /// Timestamps, if asked for.
     pub timings: Timings,
+    /// How long each section took, by its name: [`Recording::section`].
+    pub sections: Timings,
     words: Vec<u32>,
 }
 
@@ -122,7 +124,8 @@ impl Engine {
             let device = Device { inner: self.submitter.device.clone() };
             self.ahead = Some(known.map_or_else(|| Ahead::new(&device, recording), Ok)?);
         }
-        if options.timestamps && self.queries.is_none() && self.submitter.device.info.timestamps {
+        let timed = options.timestamps || recording.has_sections();
+        if timed && self.queries.is_none() && self.submitter.device.info.timestamps {
             self.queries = Some(Queries::new(&self.submitter.device)?);
         }
         let (submissions, waits) = (self.submitter.submissions, self.submitter.waits);

@@ -55,6 +55,7 @@ pub(crate) enum Step {
         from: Touch,
         to: ReadBack,
     },
+    Section(&'static str),
     Repeat(Repeat),
 }
 
@@ -112,6 +113,19 @@ impl Recording {
             indirect: Vec::new(),
             nested: false,
         }
+    }
+
+    /// What follows, up to the next section, is timed under this name: with two timestamps for all of it, where those of
+    /// commands would take longer than small commands do. In a repeated body it is nothing.
+    pub fn section(&mut self, name: &'static str) {
+        if !self.nested {
+            self.steps.push(Step::Section(name));
+        }
+    }
+
+    /// Whether anything is timed as a section.
+    pub(crate) fn has_sections(&self) -> bool {
+        self.steps.iter().any(|step| matches!(step, Step::Section(_)))
     }
 
     /// Commands at this level; a repeated body counts as one.
@@ -334,6 +348,7 @@ pub(crate) fn held(steps: &[Step], buffers: &mut Vec<Arc<BufferInner>>, kernels:
             Step::Fill { to, .. } => buffers.push(Arc::clone(&to.buffer)),
             Step::Copy { from, to, .. } => buffers.extend([Arc::clone(&from.buffer), Arc::clone(&to.buffer)]),
             Step::Read { from, .. } => buffers.push(Arc::clone(&from.buffer)),
+            Step::Section(_) => {}
             Step::Repeat(Repeat { counter, body, .. }) => {
                 buffers.push(Arc::clone(&counter.buffer));
                 held(body, buffers, kernels);

@@ -36,11 +36,13 @@ pub(crate) struct Run<'e, 'o> {
     pub(crate) report: RunReport,
     /// Loops that were run ahead and not looked at yet, in order.
     pub(crate) guards: Vec<Guard>,
+    section: Option<&'static str>,
 }
 
 impl<'e, 'o> Run<'e, 'o> {
     pub(crate) fn new(engine: &'e mut Engine, recording: &'e Recording, options: &'e RunOptions<'o>) -> Self {
-        Run { engine, recording, options, open: None, report: RunReport::default(), guards: Vec::new() }
+        let (report, guards) = (RunReport::default(), Vec::new());
+        Run { engine, recording, options, open: None, report, guards, section: None }
     }
 
     /// All of it.
@@ -66,6 +68,8 @@ impl<'e, 'o> Run<'e, 'o> {
         let mut next = 0;
         if let Some(guard) = halted {
             next = guard.step + 1;
+            let name = |step: &Step| if let Step::Section(name) = step { Some(*name) } else { None };
+            self.section = steps.iter().take(next).rev().find_map(name);
             if let Some(Step::Repeat(repeat)) = steps.get(guard.step) {
                 self.may_go_on(repeat, guard.rounds)?;
                 self.put_back()?;
@@ -136,6 +140,12 @@ impl<'e, 'o> Run<'e, 'o> {
                     }
                 },
                 Step::Read { from, to } => self.read(from, *to)?,
+                Step::Section(name) => {
+                    self.section = Some(name);
+                    if let (Some(slot), Some(queries)) = (&self.open, &mut self.engine.queries) {
+                        queries.section(slot.commands, self.section);
+                    }
+                }
                 Step::Repeat(repeat) => self.repeat(repeat)?,
             }
         }
@@ -240,7 +250,11 @@ impl<'e, 'o> Run<'e, 'o> {
             None => {
                 // A fresh command buffer begins behind everything before it.
                 self.engine.hazards.clear();
-                self.open.insert(self.engine.submitter.begin()?).commands
+                let commands = self.open.insert(self.engine.submitter.begin()?).commands;
+                if let (Some(_), Some(queries)) = (self.section, &mut self.engine.queries) {
+                    queries.section(commands, self.section);
+                }
+                commands
             }
         };
         if let Some(barrier) = self.engine.hazards.before(uses) {
@@ -262,6 +276,9 @@ impl<'e, 'o> Run<'e, 'o> {
     fn flush(&mut self) -> Result<(), Stop> {
         let halt = self.read_halt()?;
         let Some(slot) = self.open.take() else { return Ok(()) };
+        if let (Some(_), Some(queries)) = (self.section, &mut self.engine.queries) {
+            queries.section(slot.commands, None);
+        }
         host_reads(&self.engine.submitter.device.raw, slot.commands);
         let value = match self.engine.submitter.submit(&slot) {
             Ok(value) => value,
@@ -283,7 +300,7 @@ impl<'e, 'o> Run<'e, 'o> {
             }
         }
         if let Some(queries) = &mut self.engine.queries {
-            queries.collect(&mut self.report.timings)?;
+            queries.collect(&mut self.report.timings, &mut self.report.sections)?;
         }
         match halt {
             Some(place) => self.look(self.engine.word(place)),
