@@ -9,6 +9,7 @@ use finish_gpu_support::{Case, OnDevice, Shared, cases, hub, with_device};
 use polder_canonical::kernels::*;
 use polder_canonical::reference::kernels::{self, Lists};
 use polder_canonical::reference::{self, Check};
+use polder_flip::gpu::Arithmetic;
 use polder_mesh::NONE;
 use polder_vulkan::{Kernel, Shader, groups_for};
 use vulkan_support::Gpu;
@@ -332,9 +333,13 @@ fn check_triangles() {
             deferred_count: deferred_count.view(),
             vertices: steps.points() as u32,
         };
-        run::<CheckTriangles>(gpu, capacity, &[("ARITHMETIC", 0)], &all);
         let rest = CheckTrianglesArgs { items: Some(deferred.view()), counter: Some(deferred_count.view()), ..all };
-        run::<CheckTriangles>(gpu, capacity, &[("ARITHMETIC", 1)], &rest);
+        let kernels = Arithmetic::Filtered.kernels::<CheckTriangles>(&gpu.device, &[]).unwrap();
+        let mut recording = gpu.recording();
+        for (kernel, arguments) in [(&kernels.first, all), (kernels.rest.as_ref().unwrap(), rest)] {
+            recording.dispatch(kernel, groups_for(capacity, 256), &arguments);
+        }
+        gpu.run(&recording);
         let found = gpu.fetch(words.view());
         let found = Check { minima: found[0], broken: found[4], clockwise: found[8], reflex: found[12] };
         let expected = reference::check_triangles(&steps.case.mesh, &steps.case.positions, finite);

@@ -3,7 +3,7 @@
 
 use polder_canonical::gpu::{Input, Stage};
 use polder_cpu::Delaunay;
-use polder_flip::gpu::Mesh;
+use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_io::generate;
 use polder_mesh::{Chains, DVec2, Monitor};
 use polder_vulkan::{Buffer, Device, DeviceOptions, Engine, Recording, RunOptions};
@@ -39,7 +39,7 @@ fn measure(device: &Device, family: &str, points: &[DVec2]) -> Result<(), Box<dy
     let expected = delaunay.finish(Chains::default());
 
     let mut engine = Engine::new(device)?;
-    let stage = Stage::new(device)?;
+    let stage = Stage::new(device, Arithmetic::of(device)?)?;
     let on_device = Mesh::new(device, positions.len())?;
     on_device.upload(&mut engine, &mesh, &positions)?;
     let uploaded = |engine: &mut Engine, data: &[u32]| {

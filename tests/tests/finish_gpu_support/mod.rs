@@ -3,14 +3,14 @@
 
 use crate::vulkan_support::{Gpu, words};
 use polder_canonical::gpu::Stage;
-use polder_flip::gpu::Mesh;
+use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_mesh::{DVec2, GhostMesh};
 use polder_vulkan::Buffer;
 use std::sync::{Mutex, PoisonError};
 
 pub(crate) struct Shared {
     pub(crate) gpu: Gpu,
-    /// As users get it, and one that sorts all but the shortest lists by workgroups.
+    /// As users get it, and one that sorts all but the shortest lists by workgroups, and decides signs by integers alone.
     pub(crate) stages: [Stage; 2],
 }
 
@@ -21,7 +21,10 @@ pub(crate) fn with_device(test: impl FnOnce(&mut Shared)) {
     let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
     let shared = shared.get_or_insert_with(|| {
         let gpu = Gpu::open();
-        let stages = [Stage::new(&gpu.device).unwrap(), Stage::with_longest(&gpu.device, 1).unwrap()];
+        let stages = [
+            Stage::new(&gpu.device, Arithmetic::Filtered).unwrap(),
+            Stage::with_longest(&gpu.device, Arithmetic::Integers, 1).unwrap(),
+        ];
         Shared { gpu, stages }
     });
     test(shared);

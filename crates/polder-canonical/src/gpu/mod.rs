@@ -19,6 +19,7 @@ pub use buffers::{Buffers, Counts, CountsRead};
 pub use record::Input;
 
 use crate::kernels::*;
+use polder_flip::gpu::{Arithmetic, Kernels};
 use polder_vulkan::kernels::DispatchSize;
 use polder_vulkan::{Device, Error, Estimate, Kernel};
 
@@ -40,8 +41,7 @@ pub struct Stage {
     dispatch_size: Kernel<DispatchSize>,
     sort_long: Kernel<SortLong>,
     write_triangles: Kernel<WriteTriangles>,
-    check_triangles: Kernel<CheckTriangles>,
-    check_deferred: Kernel<CheckTriangles>,
+    check_triangles: Kernels<CheckTriangles>,
 }
 
 /// The longest list that is compared all with all.
@@ -53,8 +53,8 @@ impl Stage {
     /// # Errors
     ///
     /// Those of the device.
-    pub fn new(device: &Device) -> Result<Self, Error> {
-        Self::with_longest(device, LONGEST)
+    pub fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
+        Self::with_longest(device, arithmetic, LONGEST)
     }
 
     /// With another length from which lists count as long: for measurements and tests. The result does not depend on it.
@@ -62,7 +62,7 @@ impl Stage {
     /// # Errors
     ///
     /// Those of the device.
-    pub fn with_longest(device: &Device, longest: u32) -> Result<Self, Error> {
+    pub fn with_longest(device: &Device, arithmetic: Arithmetic, longest: u32) -> Result<Self, Error> {
         let limits = device.info().limits;
         let wide = limits.workgroup_invocations.min(1024) / limits.subgroup * limits.subgroup;
         Ok(Self {
@@ -78,8 +78,7 @@ impl Stage {
             dispatch_size: Kernel::new(device, &[])?,
             sort_long: Kernel::new(device, &[("WORKGROUP", wide)])?,
             write_triangles: Kernel::new(device, &[])?,
-            check_triangles: Kernel::new(device, &[("ARITHMETIC", 0)])?,
-            check_deferred: Kernel::new(device, &[("ARITHMETIC", 1)])?,
+            check_triangles: arithmetic.kernels(device, &[])?,
         })
     }
 

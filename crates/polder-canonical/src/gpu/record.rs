@@ -160,12 +160,13 @@ impl Stage {
             deferred_count,
             vertices: buffers.points as u32,
         };
-        recording.dispatch(&self.check_triangles, groups_for(buffers.slots, WORKGROUP), &all);
+        recording.dispatch(&self.check_triangles.first, groups_for(buffers.slots, WORKGROUP), &all);
+        let Some(exact) = &self.check_triangles.rest else { return Ok(()) };
         let arguments = DispatchSizeArgs { counter: Some(deferred_count), groups, limit, items: WORKGROUP };
         recording.dispatch(&self.dispatch_size, [1, 1, 1], &arguments);
         // The list is read where it was written; nothing is deferred any more.
         let rest = CheckTrianglesArgs { items: Some(deferred), counter: Some(deferred_count), ..all };
-        recording.dispatch_indirect(&self.check_deferred, groups, &rest);
+        recording.dispatch_indirect(exact, groups, &rest);
         Ok(())
     }
 }
