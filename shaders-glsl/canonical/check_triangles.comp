@@ -25,8 +25,12 @@ layout(push_constant, std430) uniform Args {
 
 bool leads_back(uint h) {
     uint g = twin(links, h);
-    return g / 3u < min(slot_count.at[0], limit) && links.at[g] == (h | (links.at[h] & CONSTRAINED))
-        && origin(triangles, h) == destination(triangles, g) && destination(triangles, h) == origin(triangles, g);
+    if (g / 3u >= min(slot_count.at[0], limit) || links.at[g] != (h | (links.at[h] & CONSTRAINED))) {
+        return false;
+    }
+    // Of two half-edges that lead to each other, one asks for both.
+    return g < h
+        || (origin(triangles, h) == destination(triangles, g) && destination(triangles, h) == origin(triangles, g));
 }
 
 void main() {

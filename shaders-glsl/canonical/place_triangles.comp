@@ -5,7 +5,6 @@
 #include "items.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
     ReadU32 names;
     ReadU32 starts;
     ReadU32 named_starts;
@@ -14,30 +13,31 @@ layout(push_constant, std430) uniform Args {
     WriteU32 places;
     WriteU32 long_lists;
     U32 long_count;
-    MaybeReadU32 counter; // of triangles
-    uint limit;
+    uint count; // of vertices
     uint longest;
 };
 
 void main() {
-    uint p = item_index();
-    if (p >= length_of(counter, limit)) {
+    uint v = item_index();
+    if (v >= count) {
         return;
     }
-    uint h = list.at[p];
-    uint v = apex(triangles, h);
     uint from = starts.at[v];
     uint to = starts.at[v + 1u];
-    if (to - from > longest) {
-        if (p == from) {
-            long_lists.at[atomicAdd(long_count.at[0], 1u)] = v;
-        }
+    if (from == to) {
         return;
     }
-    uint key = keys.at[p];
-    uint rank = 0u;
-    for (uint q = from; q < to; q++) {
-        rank += uint(keys.at[q] < key);
+    if (to - from > longest) {
+        long_lists.at[atomicAdd(long_count.at[0], 1u)] = v;
+        return;
     }
-    places.at[h / 3u] = named_starts.at[names.at[v]] + rank;
+    uint first = named_starts.at[names.at[v]];
+    for (uint p = from; p < to; p++) {
+        uint key = keys.at[p];
+        uint rank = 0u;
+        for (uint q = from; q < to; q++) {
+            rank += uint(keys.at[q] < key);
+        }
+        places.at[list.at[p] / 3u] = first + rank;
+    }
 }

@@ -1,5 +1,6 @@
 // The result: corners from the smallest on, the triangle across each edge (NONE at the hull), and for each triangle a byte
-// whose bit k says that edge k is constrained (in words where zeros stood).
+// whose bit k says that edge k is constrained (in words where zeros stood). One invocation a corner, so that what goes to
+// one place goes together: memory takes so many pieces a second, however short they are.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "items.glsl"
@@ -9,7 +10,6 @@ layout(push_constant, std430) uniform Args {
     ReadU32 links;
     ReadU32 names;
     ReadU32 list;
-    ReadU32 keys;
     ReadU32 places;
     WriteU32 sorted;
     WriteU32 neighbors;
@@ -21,24 +21,21 @@ layout(push_constant, std430) uniform Args {
 };
 
 void main() {
-    uint p = item_index();
+    uint i = item_index();
+    uint p = i / 3u;
     if (p >= length_of(counter, limit)) {
         return;
     }
-    uint slots = min(slot_count.at[0], slot_limit);
+    uint j = i - 3u * p;
     uint h = list.at[p];
-    uint place = places.at[h / 3u];
-    sorted.at[3u * place] = names.at[apex(triangles, h)];
-    sorted.at[3u * place + 1u] = keys.at[p];
-    sorted.at[3u * place + 2u] = names.at[destination(triangles, h)];
-    uint marks = 0u;
-    [[unroll]] for (uint j = 0u; j < 3u; j++) {
-        uint other = twin(links, h) / 3u;
-        neighbors.at[3u * place + j] = other < slots ? places.at[other] : NONE;
-        marks |= is_constrained(links, h) ? 1u << j : 0u;
-        h = next_edge(h);
-    }
-    if (marks != 0u) {
-        atomicOr(constrained.at[place / 4u], marks << 8u * (place % 4u));
+    uint t = h / 3u;
+    uint k = h - 3u * t + j;
+    h = 3u * t + (k < 3u ? k : k - 3u);
+    uint place = places.at[t];
+    uint other = twin(links, h) / 3u;
+    sorted.at[3u * place + j] = names.at[apex(triangles, h)];
+    neighbors.at[3u * place + j] = other < min(slot_count.at[0], slot_limit) ? places.at[other] : NONE;
+    if (is_constrained(links, h)) {
+        atomicOr(constrained.at[place / 4u], 1u << (8u * (place % 4u) + j));
     }
 }

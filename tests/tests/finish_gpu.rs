@@ -75,14 +75,14 @@ fn the_reference_is_the_order_of_polder_mesh() {
 #[test]
 fn a_hub_is_sorted_by_a_workgroup() {
     with_device(|Shared { gpu, stages, .. }| {
-        for n in [60, 70, 3000] {
+        for n in [29, 40, 3000] {
             let mut case = hub(n);
             // The hub is the first point.
             let center = case.order.iter().position(|&input| input == 0).unwrap() as u32;
             let fan = case.mesh.finite().filter(|&t| case.mesh.triangles[t].contains(&center)).count();
             assert!(fan > n / 2, "{fan}");
             let counts = assert_step(gpu, &stages[0], &case);
-            assert_eq!(counts.long_lists, u32::from(fan > 64));
+            assert_eq!(counts.long_lists, u32::from(fan > 32));
             assert_step(gpu, &stages[1], &case);
             // Other names, so that keys have other digits.
             let last = case.order.len() as u32 - 1;

@@ -196,15 +196,13 @@ fn list_triangles() {
 
 #[test]
 fn place_triangles() {
-    with_steps(|gpu, steps, on_device| {
+    with_steps(|gpu, steps, _| {
         let [names, starts, named_starts, list, keys] =
             [&steps.names, &steps.starts, &steps.named_starts, &steps.list, &steps.keys].map(|data| gpu.buffer(data));
-        let finite = gpu.buffer(&[steps.list.len() as u32]);
         for longest in [0, 1, 2, 64] {
             let places = gpu.buffer(&steps.places);
             let (long_lists, long_count) = (gpu.buffer(&vec![NONE; steps.points()]), gpu.buffer(&[0_u32]));
             let arguments = PlaceTrianglesArgs {
-                triangles: on_device.mesh.corners(),
                 names: names.view(),
                 starts: starts.view(),
                 named_starts: named_starts.view(),
@@ -213,11 +211,10 @@ fn place_triangles() {
                 places: places.view(),
                 long_lists: long_lists.view(),
                 long_count: long_count.view(),
-                counter: Some(finite.view()),
-                limit: on_device.mesh.capacity() as u32,
+                count: steps.points() as u32,
                 longest,
             };
-            run::<PlaceTriangles>(gpu, on_device.mesh.capacity(), &[], &arguments);
+            run::<PlaceTriangles>(gpu, steps.points(), &[], &arguments);
             let mut expected = steps.places.clone();
             let (mesh, lists) = (&steps.case.mesh, steps.lists());
             let long = kernels::place_triangles(mesh, &steps.names, lists, longest as usize, &mut expected);
@@ -280,7 +277,7 @@ fn write_triangles() {
         let mesh = &steps.case.mesh;
         let mut place = steps.places.clone();
         kernels::place_triangles(mesh, &steps.names, steps.lists(), usize::MAX, &mut place);
-        let [names, list, keys, places] = [&steps.names, &steps.list, &steps.keys, &place].map(|data| gpu.buffer(data));
+        let [names, list, places] = [&steps.names, &steps.list, &place].map(|data| gpu.buffer(data));
         let count = steps.list.len();
         let (sorted, neighbors) = (gpu.buffer(&vec![[7; 3]; count]), gpu.buffer(&vec![[7; 3]; count]));
         let (constrained, finite) = (gpu.buffer(&vec![0; count.div_ceil(4)]), gpu.buffer(&[count as u32]));
@@ -289,7 +286,6 @@ fn write_triangles() {
             links: on_device.mesh.twins(),
             names: names.view(),
             list: list.view(),
-            keys: keys.view(),
             places: places.view(),
             sorted: sorted.view().cast(),
             neighbors: neighbors.view().cast(),
@@ -299,7 +295,7 @@ fn write_triangles() {
             slot_count: on_device.mesh.slots(),
             slot_limit: on_device.mesh.capacity() as u32,
         };
-        run::<WriteTriangles>(gpu, on_device.mesh.capacity(), &[], &arguments);
+        run::<WriteTriangles>(gpu, 3 * on_device.mesh.capacity(), &[], &arguments);
         let expected = kernels::write_triangles(mesh, &steps.names, &steps.list, &steps.keys, &place);
         let bytes: Vec<u8> = gpu.fetch(constrained.view().cast());
         let found = (gpu.fetch(sorted.view()), gpu.fetch(neighbors.view()), bytes[..count].to_vec());

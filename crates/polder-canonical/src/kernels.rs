@@ -71,7 +71,7 @@ impl Shader for CheckTriangles {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "e3a06267cc82a3600ff0c799d76e4c926e6f5428743f487d09537acff6bcd45f",
+        source_hash: "346d6060db597ae47488deb9992e8882b7fa56f4be877ca6610027c04f76a4c1",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -323,8 +323,6 @@ pub enum PlaceTriangles {}
 #[derive(Debug, Clone, Copy)]
 pub struct PlaceTrianglesArgs<'a> {
     /// read
-    pub triangles: View<'a, u32>,
-    /// read
     pub names: View<'a, u32>,
     /// read
     pub starts: View<'a, u32>,
@@ -340,10 +338,8 @@ pub struct PlaceTrianglesArgs<'a> {
     pub long_lists: View<'a, u32>,
     /// read and written
     pub long_count: View<'a, u32>,
-    /// read, may be left out
-    pub counter: Option<View<'a, u32>>,
     /// a value
-    pub limit: u32,
+    pub count: u32,
     /// a value
     pub longest: u32,
 }
@@ -355,39 +351,35 @@ impl Shader for PlaceTriangles {
         name: "place_triangles",
         words: include_spirv!("../spv/place_triangles.spv"),
         without_float64: None,
-        argument_bytes: 88,
+        argument_bytes: 72,
         buffers: &[
-            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
-            BufferArgument { name: "names", offset: 8, access: Access::Read },
-            BufferArgument { name: "starts", offset: 16, access: Access::Read },
-            BufferArgument { name: "named_starts", offset: 24, access: Access::Read },
-            BufferArgument { name: "list", offset: 32, access: Access::Read },
-            BufferArgument { name: "keys", offset: 40, access: Access::Read },
-            BufferArgument { name: "places", offset: 48, access: Access::Write },
-            BufferArgument { name: "long_lists", offset: 56, access: Access::Write },
-            BufferArgument { name: "long_count", offset: 64, access: Access::ReadWrite },
-            BufferArgument { name: "counter", offset: 72, access: Access::Read },
+            BufferArgument { name: "names", offset: 0, access: Access::Read },
+            BufferArgument { name: "starts", offset: 8, access: Access::Read },
+            BufferArgument { name: "named_starts", offset: 16, access: Access::Read },
+            BufferArgument { name: "list", offset: 24, access: Access::Read },
+            BufferArgument { name: "keys", offset: 32, access: Access::Read },
+            BufferArgument { name: "places", offset: 40, access: Access::Write },
+            BufferArgument { name: "long_lists", offset: 48, access: Access::Write },
+            BufferArgument { name: "long_count", offset: 56, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "eed8a9cf689f755cd18f26c933d58c9cdbb61322cbd05f25c212eefafe8ae17a",
+        source_hash: "e0fb96ab8fa3f45ea368e5bb71ec4bd258f2707f2da26f07195fe7e50ecc995e",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.triangles);
-        encoder.buffer(8, args.names);
-        encoder.buffer(16, args.starts);
-        encoder.buffer(24, args.named_starts);
-        encoder.buffer(32, args.list);
-        encoder.buffer(40, args.keys);
-        encoder.buffer(48, args.places);
-        encoder.buffer(56, args.long_lists);
-        encoder.buffer(64, args.long_count);
-        encoder.optional(72, args.counter);
-        encoder.value(80, args.limit);
-        encoder.value(84, args.longest);
+        encoder.buffer(0, args.names);
+        encoder.buffer(8, args.starts);
+        encoder.buffer(16, args.named_starts);
+        encoder.buffer(24, args.list);
+        encoder.buffer(32, args.keys);
+        encoder.buffer(40, args.places);
+        encoder.buffer(48, args.long_lists);
+        encoder.buffer(56, args.long_count);
+        encoder.value(64, args.count);
+        encoder.value(68, args.longest);
     }
 }
 
@@ -558,7 +550,8 @@ impl Shader for StartNames {
 }
 
 /// The result: corners from the smallest on, the triangle across each edge (NONE at the hull), and for each triangle a byte
-/// whose bit k says that edge k is constrained (in words where zeros stood).
+/// whose bit k says that edge k is constrained (in words where zeros stood). One invocation a corner, so that what goes to
+/// one place goes together: memory takes so many pieces a second, however short they are.
 #[derive(Debug, Clone, Copy)]
 pub enum WriteTriangles {}
 
@@ -573,8 +566,6 @@ pub struct WriteTrianglesArgs<'a> {
     pub names: View<'a, u32>,
     /// read
     pub list: View<'a, u32>,
-    /// read
-    pub keys: View<'a, u32>,
     /// read
     pub places: View<'a, u32>,
     /// written
@@ -600,24 +591,23 @@ impl Shader for WriteTriangles {
         name: "write_triangles",
         words: include_spirv!("../spv/write_triangles.spv"),
         without_float64: None,
-        argument_bytes: 100,
+        argument_bytes: 92,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
             BufferArgument { name: "names", offset: 16, access: Access::Read },
             BufferArgument { name: "list", offset: 24, access: Access::Read },
-            BufferArgument { name: "keys", offset: 32, access: Access::Read },
-            BufferArgument { name: "places", offset: 40, access: Access::Read },
-            BufferArgument { name: "sorted", offset: 48, access: Access::Write },
-            BufferArgument { name: "neighbors", offset: 56, access: Access::Write },
-            BufferArgument { name: "constrained", offset: 64, access: Access::ReadWrite },
-            BufferArgument { name: "counter", offset: 72, access: Access::Read },
-            BufferArgument { name: "slot_count", offset: 88, access: Access::Read },
+            BufferArgument { name: "places", offset: 32, access: Access::Read },
+            BufferArgument { name: "sorted", offset: 40, access: Access::Write },
+            BufferArgument { name: "neighbors", offset: 48, access: Access::Write },
+            BufferArgument { name: "constrained", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "counter", offset: 64, access: Access::Read },
+            BufferArgument { name: "slot_count", offset: 80, access: Access::Read },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "6d5bb23643ab9230223a8bb96038d2f8e876a2931599f7e4075a42821e3b7553",
+        source_hash: "47c203bc1276d74dbeb2e5268eea69da666db8c9d8308b9f98da1dd8865386b4",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -626,14 +616,13 @@ impl Shader for WriteTriangles {
         encoder.buffer(8, args.links);
         encoder.buffer(16, args.names);
         encoder.buffer(24, args.list);
-        encoder.buffer(32, args.keys);
-        encoder.buffer(40, args.places);
-        encoder.buffer(48, args.sorted);
-        encoder.buffer(56, args.neighbors);
-        encoder.buffer(64, args.constrained);
-        encoder.optional(72, args.counter);
-        encoder.value(80, args.limit);
-        encoder.buffer(88, args.slot_count);
-        encoder.value(96, args.slot_limit);
+        encoder.buffer(32, args.places);
+        encoder.buffer(40, args.sorted);
+        encoder.buffer(48, args.neighbors);
+        encoder.buffer(56, args.constrained);
+        encoder.optional(64, args.counter);
+        encoder.value(72, args.limit);
+        encoder.buffer(80, args.slot_count);
+        encoder.value(88, args.slot_limit);
     }
 }

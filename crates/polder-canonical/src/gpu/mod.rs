@@ -45,7 +45,7 @@ pub struct Stage {
 }
 
 /// The longest list that is compared all with all.
-const LONGEST: u32 = 64;
+const LONGEST: u32 = 32;
 
 impl Stage {
     /// Compiles the kernels.

@@ -82,7 +82,6 @@ impl Stage {
         // Until the end the results' memory is scratch memory.
         let long_lists = buffers.neighbors.view().cast::<u32>();
         let arguments = PlaceTrianglesArgs {
-            triangles,
             names,
             starts,
             named_starts,
@@ -91,11 +90,10 @@ impl Stage {
             places,
             long_lists,
             long_count: long,
-            counter: Some(finite),
-            limit,
+            count,
             longest: self.longest,
         };
-        recording.dispatch(&self.place_triangles, by_slot, &arguments);
+        recording.dispatch(&self.place_triangles, groups_for(points, WORKGROUP), &arguments);
         let groups = buffers.groups()?;
         let arguments = DispatchSizeArgs { counter: Some(long), groups, limit: count, items: 1 };
         recording.dispatch(&self.dispatch_size, [1, 1, 1], &arguments);
@@ -124,7 +122,6 @@ impl Stage {
             links: input.mesh.twins(),
             names,
             list,
-            keys,
             places,
             sorted: buffers.triangles.view().cast(),
             neighbors: buffers.neighbors.view().cast(),
@@ -134,7 +131,7 @@ impl Stage {
             slot_count: input.mesh.slots(),
             slot_limit: limit,
         };
-        recording.dispatch(&self.write_triangles, by_slot, &arguments);
+        recording.dispatch(&self.write_triangles, groups_for(3 * slots, WORKGROUP), &arguments);
         Ok(())
     }
 
