@@ -7,8 +7,10 @@ use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_io::generate;
 use polder_mesh::{Chains, DVec2, Monitor};
 use polder_vulkan::{Buffer, Device, DeviceOptions, Engine, Recording, RunOptions};
+use std::time::{Duration, Instant};
 
 const RUNS: usize = 10;
+const WARM: Duration = Duration::from_secs(1);
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let device = Device::open(&DeviceOptions::default())?;
@@ -60,6 +62,11 @@ fn measure(device: &Device, family: &str, points: &[DVec2]) -> Result<(), Box<dy
     println!("{family}, {} points: {counts:?}; equal: {same}", points.len());
     if !same {
         return Err("the device gives another result".into());
+    }
+    // A card that was idle is slow at first.
+    let start = Instant::now();
+    while start.elapsed() < WARM {
+        engine.run(&recording, &RunOptions::default())?;
     }
     let mut runs = Vec::new();
     for _ in 0..RUNS {
