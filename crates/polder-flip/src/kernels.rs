@@ -2,6 +2,177 @@
 
 use polder_vulkan::{Access, BufferArgument, Code, Constant, Encoder, Shader, Side, View, include_spirv};
 
+/// Step 3 of a round, first half: of all that claim a triangle the least priority gets it, and who got both is flipped.
+/// Outer links keep the names that they had before the round, until `relink_edges` renews them.
+#[derive(Debug, Clone, Copy)]
+pub enum FlipEdges {}
+
+/// Arguments of [`FlipEdges`].
+#[derive(Debug, Clone, Copy)]
+pub struct FlipEdgesArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read and written
+    pub claims: View<'a, u32>,
+    /// read and written
+    pub stamps: View<'a, u32>,
+    /// read and written
+    pub illegal: View<'a, u32>,
+    /// read and written
+    pub edge_count: View<'a, u32>,
+    /// read, may be left out
+    pub edges: Option<View<'a, u32>>,
+    /// read and written, may be left out
+    pub listed: Option<View<'a, u32>>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// read and written
+    pub report: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+}
+
+impl Shader for FlipEdges {
+    type Args<'a> = FlipEdgesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "flip_edges",
+        words: include_spirv!("../spv/flip_edges.spv"),
+        without_float64: None,
+        argument_bytes: 84,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "claims", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "stamps", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "illegal", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "edge_count", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "edges", offset: 48, access: Access::Read },
+            BufferArgument { name: "listed", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 72, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "bd412f9246bcb77fcac68be0b48280d7d50a91a8718b31e0bc456772d06de64b",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.claims);
+        encoder.buffer(24, args.stamps);
+        encoder.buffer(32, args.illegal);
+        encoder.buffer(40, args.edge_count);
+        encoder.optional(48, args.edges);
+        encoder.optional(56, args.listed);
+        encoder.buffer(64, args.words);
+        encoder.buffer(72, args.report);
+        encoder.value(80, args.limit);
+    }
+}
+
+/// Whole rounds inside one workgroup, while few edges are active: as many as `most`, and fewer when an edge is left to do
+/// nothing with, or too many. The same rounds as by the wide kernels.
+#[derive(Debug, Clone, Copy)]
+pub enum FlipTail {}
+
+/// Arguments of [`FlipTail`].
+#[derive(Debug, Clone, Copy)]
+pub struct FlipTailArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written
+    pub edges: View<'a, u32>,
+    /// read and written
+    pub edge_count: View<'a, u32>,
+    /// written, may be left out
+    pub also: Option<View<'a, u32>>,
+    /// read and written, may be left out
+    pub also_count: Option<View<'a, u32>>,
+    /// read and written
+    pub illegal: View<'a, u32>,
+    /// read and written
+    pub claims: View<'a, u32>,
+    /// read and written
+    pub stamps: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// read and written
+    pub report: View<'a, u32>,
+    /// a value
+    pub scope: u32,
+    /// a value
+    pub least: u32,
+    /// a value
+    pub most: u32,
+    /// a value
+    pub most_tests: u32,
+    /// a value
+    pub also_limit: u32,
+}
+
+impl Shader for FlipTail {
+    type Args<'a> = FlipTailArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "flip_tail",
+        words: include_spirv!("../spv/flip_tail.spv"),
+        without_float64: Some(include_spirv!("../spv/flip_tail.integers.spv")),
+        argument_bytes: 116,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "edges", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "edge_count", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "also", offset: 40, access: Access::Write },
+            BufferArgument { name: "also_count", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "illegal", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "claims", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "stamps", offset: 72, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 80, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 88, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "b7c524041b42ce2fde569fb365e92580a947aaa96396b9aa6616403ab66b8bd7",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.edges);
+        encoder.buffer(32, args.edge_count);
+        encoder.optional(40, args.also);
+        encoder.optional(48, args.also_count);
+        encoder.buffer(56, args.illegal);
+        encoder.buffer(64, args.claims);
+        encoder.buffer(72, args.stamps);
+        encoder.buffer(80, args.words);
+        encoder.buffer(88, args.report);
+        encoder.value(96, args.scope);
+        encoder.value(100, args.least);
+        encoder.value(104, args.most);
+        encoder.value(108, args.most_tests);
+        encoder.value(112, args.also_limit);
+    }
+}
+
 /// Whether the edge bc of the triangles abc and dcb must be flipped to ad, for each quadruple of points: 1 or 0. What is
 /// undecided is put on a list.
 #[derive(Debug, Clone, Copy)]
@@ -128,5 +299,180 @@ impl Shader for Orient2dSigns {
         encoder.buffer(40, args.deferred);
         encoder.buffer(48, args.deferred_count);
         encoder.value(56, args.limit);
+    }
+}
+
+/// Step 3 of a round, second half, and step 4: renews the links around all flips, gives claimed triangles back, and lists the
+/// edges of the next round: those around flips, and illegal ones next to no flip. No edge is listed twice.
+#[derive(Debug, Clone, Copy)]
+pub enum RelinkEdges {}
+
+/// Arguments of [`RelinkEdges`].
+#[derive(Debug, Clone, Copy)]
+pub struct RelinkEdgesArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read and written
+    pub claims: View<'a, u32>,
+    /// read and written
+    pub stamps: View<'a, u32>,
+    /// read
+    pub illegal: View<'a, u32>,
+    /// written
+    pub edges: View<'a, u32>,
+    /// read and written
+    pub edge_count: View<'a, u32>,
+    /// written, may be left out
+    pub also: Option<View<'a, u32>>,
+    /// read and written, may be left out
+    pub also_count: Option<View<'a, u32>>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub also_limit: u32,
+}
+
+impl Shader for RelinkEdges {
+    type Args<'a> = RelinkEdgesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "relink_edges",
+        words: include_spirv!("../spv/relink_edges.spv"),
+        without_float64: None,
+        argument_bytes: 84,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "claims", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "stamps", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "illegal", offset: 32, access: Access::Read },
+            BufferArgument { name: "edges", offset: 40, access: Access::Write },
+            BufferArgument { name: "edge_count", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "also", offset: 56, access: Access::Write },
+            BufferArgument { name: "also_count", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 72, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "4efc5b863378efc67ba791e60f64ce53b4fb1f671e6c6d8c16954ed3f6cc9a39",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.claims);
+        encoder.buffer(24, args.stamps);
+        encoder.buffer(32, args.illegal);
+        encoder.buffer(40, args.edges);
+        encoder.buffer(48, args.edge_count);
+        encoder.optional(56, args.also);
+        encoder.optional(64, args.also_count);
+        encoder.buffer(72, args.words);
+        encoder.value(80, args.also_limit);
+    }
+}
+
+/// Steps 1 and 2 of a round: each active edge is tested, and illegal ones claim their two triangles. What the filter leaves
+/// open is deferred to the same kernel with exact arithmetic, which runs over it next.
+#[derive(Debug, Clone, Copy)]
+pub enum TestEdges {}
+
+/// Arguments of [`TestEdges`].
+#[derive(Debug, Clone, Copy)]
+pub struct TestEdgesArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written, may be left out
+    pub edges: Option<View<'a, u32>>,
+    /// read, may be left out
+    pub edge_count: Option<View<'a, u32>>,
+    /// read and written, may be left out
+    pub listed: Option<View<'a, u32>>,
+    /// read and written
+    pub claims: View<'a, u32>,
+    /// written
+    pub illegal: View<'a, u32>,
+    /// written
+    pub deferred: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// read and written
+    pub report: View<'a, u32>,
+    /// read
+    pub slots: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub least: u32,
+    /// a value
+    pub scope: u32,
+    /// a value
+    pub again: u32,
+}
+
+impl Shader for TestEdges {
+    type Args<'a> = TestEdgesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "test_edges",
+        words: include_spirv!("../spv/test_edges.spv"),
+        without_float64: Some(include_spirv!("../spv/test_edges.integers.spv")),
+        argument_bytes: 112,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "edges", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "edge_count", offset: 32, access: Access::Read },
+            BufferArgument { name: "listed", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "claims", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "illegal", offset: 56, access: Access::Write },
+            BufferArgument { name: "deferred", offset: 64, access: Access::Write },
+            BufferArgument { name: "words", offset: 72, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 80, access: Access::ReadWrite },
+            BufferArgument { name: "slots", offset: 88, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformArithmetic",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "11e569180e130f3b973ad4e90ae1056d9dfc20dc4cfe63474802c11749b3fa8f",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.optional(24, args.edges);
+        encoder.optional(32, args.edge_count);
+        encoder.optional(40, args.listed);
+        encoder.buffer(48, args.claims);
+        encoder.buffer(56, args.illegal);
+        encoder.buffer(64, args.deferred);
+        encoder.buffer(72, args.words);
+        encoder.buffer(80, args.report);
+        encoder.buffer(88, args.slots);
+        encoder.value(96, args.limit);
+        encoder.value(100, args.least);
+        encoder.value(104, args.scope);
+        encoder.value(108, args.again);
     }
 }

@@ -20,6 +20,7 @@
 //! - Signs are exact and ties are settled, so no edge is left for another device to decide.
 
 mod active;
+pub mod kernels;
 mod signs;
 mod start;
 

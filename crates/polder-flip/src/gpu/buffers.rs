@@ -1,0 +1,162 @@
+//! What the stage holds on the device beside the mesh.
+
+use super::Mesh;
+use crate::FlipReport;
+use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunReport, View};
+
+/// Words of a list's count, of the words that steer rounds, and of a report.
+const WORDS: usize = 8;
+
+/// Edges to be tested in the next flip round: half-edges in any order, from either side and repeatedly, also of triangles
+/// that are freed later. Kernels append by `edge_list.glsl`.
+#[derive(Debug)]
+pub struct EdgeList {
+    edges: Buffer<u32>,
+    count: Buffer<u32>,
+}
+
+impl EdgeList {
+    /// Room for so many.
+    ///
+    /// # Errors
+    ///
+    /// If the memory cannot be had.
+    pub fn new(device: &Device, limit: usize) -> Result<Self, Error> {
+        Ok(Self { edges: Buffer::new(device, "edges", limit)?, count: Buffer::new(device, "edge count", WORDS)? })
+    }
+
+    /// What [`EdgeList::new`] will hold.
+    pub fn estimate(limit: usize) -> Estimate {
+        Estimate::new().buffer::<u32>("edges", limit).buffer::<u32>("edge count", WORDS)
+    }
+
+    /// The half-edges.
+    pub fn edges(&self) -> View<'_, u32> {
+        self.edges.view()
+    }
+
+    /// How many there are, in the first word; more than [`EdgeList::limit`] if some did not fit.
+    pub fn count(&self) -> View<'_, u32> {
+        self.count.view()
+    }
+
+    /// How many fit.
+    pub fn limit(&self) -> u32 {
+        self.edges.len() as u32
+    }
+
+    /// Records that the list becomes empty.
+    pub fn record_clear(&self, recording: &mut Recording) {
+        recording.fill(self.count.view(), 0);
+    }
+}
+
+/// A [`FlipReport`] in the making, on the device.
+#[derive(Debug)]
+pub struct Tally {
+    words: Buffer<u32>,
+}
+
+impl Tally {
+    /// One that is not yet cleared.
+    ///
+    /// # Errors
+    ///
+    /// If the memory cannot be had.
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        Ok(Self { words: Buffer::new(device, "flip report", WORDS)? })
+    }
+
+    /// Records that it becomes zero.
+    pub fn record_clear(&self, recording: &mut Recording) {
+        recording.fill(self.words.view(), 0);
+    }
+
+    /// Asks a recording to bring it back.
+    pub fn read(&self, recording: &mut Recording) -> TallyRead {
+        TallyRead(recording.read(self.words.view()))
+    }
+
+    pub(super) fn words(&self) -> View<'_, u32> {
+        self.words.view()
+    }
+}
+
+/// Where a [`FlipReport`] will be found in the report of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct TallyRead(ReadBack);
+
+impl TallyRead {
+    /// The report, after the run.
+    pub fn report(&self, report: &RunReport) -> FlipReport {
+        let words = report.words(self.0);
+        let word = |at: usize| words.get(at).map_or(0, |&word| u64::from(word));
+        FlipReport { rounds: word(0), flips: word(1) | word(2) << 32, tests: word(3) | word(4) << 32 }
+    }
+}
+
+/// Scratch memory of the stage, for one number of slots: at most 26 bytes a slot, and 6 for the list of [`Buffers::list`].
+#[derive(Debug)]
+pub struct Buffers {
+    pub(super) slots: usize,
+    /// By triangle: the least priority that claims it.
+    pub(super) claims: Buffer<u32>,
+    /// By triangle: the last round that flipped it, and along which edge.
+    pub(super) stamps: Buffer<u32>,
+    /// A bit for each half-edge: whether it was met in this round.
+    pub(super) listed: Buffer<u32>,
+    pub(super) illegal: Buffer<u32>,
+    pub(super) deferred: Buffer<u32>,
+    pub(super) words: Buffer<u32>,
+    pub(super) list: EdgeList,
+}
+
+/// Edges of a mesh of so many slots.
+fn edges_of(slots: usize) -> usize {
+    3 * slots.div_ceil(2)
+}
+
+fn listed_of(slots: usize) -> usize {
+    (3 * slots).div_ceil(32)
+}
+
+pub(super) fn estimate(slots: usize) -> Estimate {
+    Estimate::new()
+        .buffer::<u32>("claims", slots)
+        .buffer::<u32>("stamps", slots)
+        .buffer::<u32>("listed", listed_of(slots))
+        .buffer::<u32>("illegal", edges_of(slots))
+        .buffer::<u32>("deferred", edges_of(slots))
+        .buffer::<u32>("flip words", WORDS)
+        .and(EdgeList::estimate(edges_of(slots)))
+}
+
+impl Buffers {
+    pub(super) fn new(device: &Device, slots: usize) -> Result<Self, Error> {
+        estimate(slots).check(device)?;
+        let words = |name, len| Buffer::<u32>::new(device, name, len);
+        Ok(Self {
+            slots,
+            claims: words("claims", slots)?,
+            stamps: words("stamps", slots)?,
+            listed: words("listed", listed_of(slots))?,
+            illegal: words("illegal", edges_of(slots))?,
+            deferred: words("deferred", edges_of(slots))?,
+            words: words("flip words", WORDS)?,
+            list: EdgeList::new(device, edges_of(slots))?,
+        })
+    }
+
+    /// The list that [`Stage::record_flip`](super::Stage::record_flip) works on; free for others in between.
+    pub fn list(&self) -> &EdgeList {
+        &self.list
+    }
+
+    pub(super) fn fit(&self, mesh: &Mesh, command: &'static str) -> Result<(), Error> {
+        if mesh.capacity() > self.slots {
+            let why = format!("buffers for {} slots, a mesh of {}", self.slots, mesh.capacity());
+            return Err(Error::Recording { command, why });
+        }
+        Ok(())
+    }
+}
