@@ -206,3 +206,687 @@ impl Shader for DualizeWrite {
         encoder.value(76, args.height);
     }
 }
+
+/// Pin: puts the sites that were pinned in the last round on their pixel centers, and tests the triangles around them.
+#[derive(Debug, Clone, Copy)]
+pub enum PinStars {}
+
+/// Arguments of [`PinStars`].
+#[derive(Debug, Clone, Copy)]
+pub struct PinStarsArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub links: View<'a, u32>,
+    /// read and written
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read and written
+    pub pinned: View<'a, u32>,
+    /// read and written
+    pub deferred: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// read
+    pub pixels: View<'a, u32>,
+    /// a value
+    pub translation_x: i64,
+    /// a value
+    pub translation_y: i64,
+    /// a value
+    pub exponent: i32,
+    /// a value
+    pub half_side: u32,
+    /// a value
+    pub round: u32,
+}
+
+impl Shader for PinStars {
+    type Args<'a> = PinStarsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "pin_stars",
+        words: include_spirv!("../spv/pin_stars.spv"),
+        without_float64: Some(include_spirv!("../spv/pin_stars.integers.spv")),
+        argument_bytes: 92,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
+            BufferArgument { name: "positions", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "pinned", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "deferred", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "pixels", offset: 56, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 128 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformBallot",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "fbc2fdcce9c6c58b94c6988b26f5105108d6266dceef5a904a6602d6ee00b657",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.state);
+        encoder.buffer(32, args.pinned);
+        encoder.buffer(40, args.deferred);
+        encoder.buffer(48, args.words);
+        encoder.buffer(56, args.pixels);
+        encoder.value(64, args.translation_x);
+        encoder.value(72, args.translation_y);
+        encoder.value(80, args.exponent);
+        encoder.value(84, args.half_side);
+        encoder.value(88, args.round);
+    }
+}
+
+/// Pin: tests triangles, all or those on a list, and pins the corners of every one that is not counterclockwise.
+#[derive(Debug, Clone, Copy)]
+pub enum PinTriangles {}
+
+/// Arguments of [`PinTriangles`].
+#[derive(Debug, Clone, Copy)]
+pub struct PinTrianglesArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read and written
+    pub pinned: View<'a, u32>,
+    /// read and written
+    pub deferred: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// read, may be left out
+    pub listed: Option<View<'a, u32>>,
+    /// read
+    pub slots: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub entry: u32,
+}
+
+impl Shader for PinTriangles {
+    type Args<'a> = PinTrianglesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "pin_triangles",
+        words: include_spirv!("../spv/pin_triangles.spv"),
+        without_float64: Some(include_spirv!("../spv/pin_triangles.integers.spv")),
+        argument_bytes: 72,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "positions", offset: 8, access: Access::Read },
+            BufferArgument { name: "state", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "pinned", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "deferred", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "listed", offset: 48, access: Access::Read },
+            BufferArgument { name: "slots", offset: 56, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 128 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformBallot",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "a651e70583f2f0c6e9e8e45d0fe2e4fb30f3d7ee1c68b8cb44784ffb6b131a1f",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.positions);
+        encoder.buffer(16, args.state);
+        encoder.buffer(24, args.pinned);
+        encoder.buffer(32, args.deferred);
+        encoder.buffer(40, args.words);
+        encoder.optional(48, args.listed);
+        encoder.buffer(56, args.slots);
+        encoder.value(64, args.limit);
+        encoder.value(68, args.entry);
+    }
+}
+
+/// Shift: after a batch of rounds of pinning, unpinning or taking out, counts them and gets the words ready for the next.
+#[derive(Debug, Clone, Copy)]
+pub enum ShiftAdvance {}
+
+/// Arguments of [`ShiftAdvance`].
+#[derive(Debug, Clone, Copy)]
+pub struct ShiftAdvanceArgs<'a> {
+    /// read and written
+    pub words: View<'a, u32>,
+    /// read and written
+    pub slots: View<'a, u32>,
+    /// a value
+    pub phase: u32,
+    /// a value
+    pub rounds: u32,
+}
+
+impl Shader for ShiftAdvance {
+    type Args<'a> = ShiftAdvanceArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "shift_advance",
+        words: include_spirv!("../spv/shift_advance.spv"),
+        without_float64: None,
+        argument_bytes: 24,
+        buffers: &[
+            BufferArgument { name: "words", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "slots", offset: 8, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "76f29e614dcdc9702daff7dca0d683303b0959f6463ad5bbecb83ad43bc8be10",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.words);
+        encoder.buffer(8, args.slots);
+        encoder.value(16, args.phase);
+        encoder.value(20, args.rounds);
+    }
+}
+
+/// Shift: puts every point to its true position in the new order, and marks each site as not pinned.
+#[derive(Debug, Clone, Copy)]
+pub enum ShiftMove {}
+
+/// Arguments of [`ShiftMove`].
+#[derive(Debug, Clone, Copy)]
+pub struct ShiftMoveArgs<'a> {
+    /// read
+    pub points: View<'a, [u32; 4]>,
+    /// read
+    pub order: View<'a, u32>,
+    /// read and written
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read
+    pub sites: View<'a, u32>,
+    /// a value
+    pub count: u32,
+    /// a value
+    pub limit: u32,
+}
+
+impl Shader for ShiftMove {
+    type Args<'a> = ShiftMoveArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "shift_move",
+        words: include_spirv!("../spv/shift_move.spv"),
+        without_float64: None,
+        argument_bytes: 48,
+        buffers: &[
+            BufferArgument { name: "points", offset: 0, access: Access::Read },
+            BufferArgument { name: "order", offset: 8, access: Access::Read },
+            BufferArgument { name: "positions", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "sites", offset: 32, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "4ec1036538f0d06fb57daa1bccd60a1491820c40440b133a192e705876728960",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.points);
+        encoder.buffer(8, args.order);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.state);
+        encoder.buffer(32, args.sites);
+        encoder.value(40, args.count);
+        encoder.value(44, args.limit);
+    }
+}
+
+/// Take out: cuts ears off the star of each site that goes, and merges what is left, or moves the site to infinity if it is
+/// on the hull. Nothing outside the star is touched; where its outer edges have gone is noted.
+#[derive(Debug, Clone, Copy)]
+pub enum TakeoutCut {}
+
+/// Arguments of [`TakeoutCut`].
+#[derive(Debug, Clone, Copy)]
+pub struct TakeoutCutArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read and written
+    pub winners: View<'a, u32>,
+    /// read and written
+    pub deferred: View<'a, u32>,
+    /// read and written
+    pub freed: View<'a, u32>,
+    /// read and written
+    pub edge_of: View<'a, u32>,
+    /// read and written
+    pub edges: View<'a, [u32; 2]>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub round: u32,
+    /// a value
+    pub again: u32,
+}
+
+impl Shader for TakeoutCut {
+    type Args<'a> = TakeoutCutArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "takeout_cut",
+        words: include_spirv!("../spv/takeout_cut.spv"),
+        without_float64: Some(include_spirv!("../spv/takeout_cut.integers.spv")),
+        argument_bytes: 88,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "state", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "winners", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "deferred", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "freed", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "edge_of", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "edges", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 72, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 128 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformBallot",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "aa7bf5b680b4aab5fe19d649900d5e191b087910b7ce212c3b2fc16dfad8a4fd",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.state);
+        encoder.buffer(32, args.winners);
+        encoder.buffer(40, args.deferred);
+        encoder.buffer(48, args.freed);
+        encoder.buffer(56, args.edge_of);
+        encoder.buffer(64, args.edges);
+        encoder.buffer(72, args.words);
+        encoder.value(80, args.round);
+        encoder.value(84, args.again);
+    }
+}
+
+/// Take out: finds the pinned sites that go in this round, those without a pinned neighbor of lower priority; each with the
+/// half-edge to its heir. The others wait.
+#[derive(Debug, Clone, Copy)]
+pub enum TakeoutElect {}
+
+/// Arguments of [`TakeoutElect`].
+#[derive(Debug, Clone, Copy)]
+pub struct TakeoutElectArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub links: View<'a, u32>,
+    /// read
+    pub state: View<'a, u32>,
+    /// read
+    pub waiting: View<'a, u32>,
+    /// written
+    pub later: View<'a, u32>,
+    /// written
+    pub winners: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub round: u32,
+}
+
+impl Shader for TakeoutElect {
+    type Args<'a> = TakeoutElectArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "takeout_elect",
+        words: include_spirv!("../spv/takeout_elect.spv"),
+        without_float64: None,
+        argument_bytes: 60,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
+            BufferArgument { name: "state", offset: 16, access: Access::Read },
+            BufferArgument { name: "waiting", offset: 24, access: Access::Read },
+            BufferArgument { name: "later", offset: 32, access: Access::Write },
+            BufferArgument { name: "winners", offset: 40, access: Access::Write },
+            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
+        capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "e1fa1e2a9945cd745291c5a3700cfc918c627565d32dd2c3df02605c0a8fef43",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.state);
+        encoder.buffer(24, args.waiting);
+        encoder.buffer(32, args.later);
+        encoder.buffer(40, args.winners);
+        encoder.buffer(48, args.words);
+        encoder.value(56, args.round);
+    }
+}
+
+/// Take out: follows heirs to vertices that are still there, lists the sites taken out, and puts all that were pinned to
+/// their true positions. Of an empty mesh, all sites are taken out, without heirs.
+#[derive(Debug, Clone, Copy)]
+pub enum TakeoutHeirs {}
+
+/// Arguments of [`TakeoutHeirs`].
+#[derive(Debug, Clone, Copy)]
+pub struct TakeoutHeirsArgs<'a> {
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read
+    pub all: View<'a, u32>,
+    /// written
+    pub taken: View<'a, u32>,
+    /// read and written
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub points: View<'a, [u32; 4]>,
+    /// read
+    pub order: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// read
+    pub sites: View<'a, u32>,
+    /// read
+    pub slots: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+}
+
+impl Shader for TakeoutHeirs {
+    type Args<'a> = TakeoutHeirsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "takeout_heirs",
+        words: include_spirv!("../spv/takeout_heirs.spv"),
+        without_float64: None,
+        argument_bytes: 76,
+        buffers: &[
+            BufferArgument { name: "state", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "all", offset: 8, access: Access::Read },
+            BufferArgument { name: "taken", offset: 16, access: Access::Write },
+            BufferArgument { name: "positions", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "points", offset: 32, access: Access::Read },
+            BufferArgument { name: "order", offset: 40, access: Access::Read },
+            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "sites", offset: 56, access: Access::Read },
+            BufferArgument { name: "slots", offset: 64, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
+        capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "83a0b1b350e47f4f791e07aa0ff56acaec30c079bbb7d35bc4e98cf7e35d1520",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.state);
+        encoder.buffer(8, args.all);
+        encoder.buffer(16, args.taken);
+        encoder.buffer(24, args.positions);
+        encoder.buffer(32, args.points);
+        encoder.buffer(40, args.order);
+        encoder.buffer(48, args.words);
+        encoder.buffer(56, args.sites);
+        encoder.buffer(64, args.slots);
+        encoder.value(72, args.limit);
+    }
+}
+
+/// Take out: links the outer edges of the stars that were cut to what is across, which may be an outer edge of another star;
+/// and tells pinned sites around them of a half-edge that they still have.
+#[derive(Debug, Clone, Copy)]
+pub enum TakeoutLink {}
+
+/// Arguments of [`TakeoutLink`].
+#[derive(Debug, Clone, Copy)]
+pub struct TakeoutLinkArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read
+    pub edge_of: View<'a, u32>,
+    /// read and written
+    pub edges: View<'a, [u32; 2]>,
+    /// read
+    pub words: View<'a, u32>,
+    /// a value
+    pub round: u32,
+}
+
+impl Shader for TakeoutLink {
+    type Args<'a> = TakeoutLinkArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "takeout_link",
+        words: include_spirv!("../spv/takeout_link.spv"),
+        without_float64: None,
+        argument_bytes: 52,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "edge_of", offset: 24, access: Access::Read },
+            BufferArgument { name: "edges", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 40, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "54ee2ff06567da60c59ac4578531b608eb7fd85bea78ca3e9f01f235d9a29c6c",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.state);
+        encoder.buffer(24, args.edge_of);
+        encoder.buffer(32, args.edges);
+        encoder.buffer(40, args.words);
+        encoder.value(48, args.round);
+    }
+}
+
+/// Unpin: what has become of each pinned site. The list of their half-edges becomes a list of the sites, and those that are
+/// still pinned are to be taken out.
+#[derive(Debug, Clone, Copy)]
+pub enum UnpinFinish {}
+
+/// Arguments of [`UnpinFinish`].
+#[derive(Debug, Clone, Copy)]
+pub struct UnpinFinishArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read and written
+    pub all: View<'a, u32>,
+    /// read and written
+    pub stuck: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+}
+
+impl Shader for UnpinFinish {
+    type Args<'a> = UnpinFinishArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "unpin_finish",
+        words: include_spirv!("../spv/unpin_finish.spv"),
+        without_float64: None,
+        argument_bytes: 40,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "state", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "all", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "stuck", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 32, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
+        capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "f3f754b3187697427fc89b6f821d1a0d4b93b03a98d558bfd9034a323ff021b1",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.state);
+        encoder.buffer(16, args.all);
+        encoder.buffer(24, args.stuck);
+        encoder.buffer(32, args.words);
+    }
+}
+
+/// Unpin: tries the pinned sites whose turn it is at their true positions, and frees those around which the triangles stay
+/// counterclockwise. The others wait for the next round.
+#[derive(Debug, Clone, Copy)]
+pub enum UnpinStars {}
+
+/// Arguments of [`UnpinStars`].
+#[derive(Debug, Clone, Copy)]
+pub struct UnpinStarsArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub links: View<'a, u32>,
+    /// read and written
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read
+    pub points: View<'a, [u32; 4]>,
+    /// read
+    pub order: View<'a, u32>,
+    /// read
+    pub all: View<'a, u32>,
+    /// read and written
+    pub waiting: View<'a, u32>,
+    /// read and written
+    pub later: View<'a, u32>,
+    /// read and written
+    pub deferred: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub round: u32,
+    /// a value
+    pub again: u32,
+}
+
+impl Shader for UnpinStars {
+    type Args<'a> = UnpinStarsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "unpin_stars",
+        words: include_spirv!("../spv/unpin_stars.spv"),
+        without_float64: Some(include_spirv!("../spv/unpin_stars.integers.spv")),
+        argument_bytes: 96,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
+            BufferArgument { name: "positions", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "points", offset: 32, access: Access::Read },
+            BufferArgument { name: "order", offset: 40, access: Access::Read },
+            BufferArgument { name: "all", offset: 48, access: Access::Read },
+            BufferArgument { name: "waiting", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "later", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "deferred", offset: 72, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 80, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 128 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformBallot",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "2f72ff9be3d1a715cc99c5f5c7427970f19d950c398baf140c875737a77efee4",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.state);
+        encoder.buffer(32, args.points);
+        encoder.buffer(40, args.order);
+        encoder.buffer(48, args.all);
+        encoder.buffer(56, args.waiting);
+        encoder.buffer(64, args.later);
+        encoder.buffer(72, args.deferred);
+        encoder.buffer(80, args.words);
+        encoder.value(88, args.round);
+        encoder.value(92, args.again);
+    }
+}

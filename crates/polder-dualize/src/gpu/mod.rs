@@ -3,3 +3,5 @@
 pub mod dualize;
 pub mod insert;
 pub mod shift;
+mod shift_buffers;
+mod takeout;

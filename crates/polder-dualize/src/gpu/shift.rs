@@ -1,1 +1,215 @@
 //! Stage 3 on the device.
+//!
+//! 1. *Pin.* One kernel tests all triangles, with every site at its true position, and puts half-edges out of the corners
+//!    of bad ones on a list. Rounds then work on the end of that list: its sites go to their pixel centers, which are
+//!    computed from the pixels in integers, and the triangles around them are tested.
+//! 2. *Unpin.* Rounds over lists of the pinned sites. A site is tried in the round in which no neighbor of lower priority
+//!    waits; the rounds in which sites were tried are kept, so that finding and trying are one kernel.
+//! 3. *Close.* `polder-flip` closes the hull. Ghost flips leave finite triangles as they are, and so the half-edges of
+//!    pinned sites stay theirs.
+//! 4. *Take out*, in rounds of three steps: find the sites that go; cut their stars, each by one invocation and within its
+//!    own triangles; link the stars' outer edges to what is across. See [`reference`](mod@crate::reference).
+//!
+//! Step 1 reads all triangles once, everything else lists. Sites on lists are in order of arrival, and nothing depends on
+//! that order. Positions are those of the mesh: true ones but for pinned sites, and at the end true ones.
+//!
+//! Rounds are recorded in batches. A batch that does not suffice is noticed when the recording has run ahead
+//! ([`Recording::repeat_ahead`]), so the host waits for nothing else.
+//!
+//! Departures from the reference: the certificates are not checked here.
+
+use super::shift_buffers::{Row, Word};
+use crate::kernels::*;
+use glam::DVec2;
+use polder_flip::gpu::{Arithmetic, Kernels, Mesh};
+use polder_voronoi::GridMapping;
+use polder_vulkan::{Device, DeviceKind, Error, Estimate, Kernel, Recording, View};
+
+pub use super::shift_buffers::{Buffers, Counts, Read};
+
+/// Rounds of a batch: even where two lists change places.
+pub(super) const PIN_ROUNDS: u32 = 5;
+pub(super) const UNPIN_ROUNDS: u32 = 10;
+pub(super) const OUT_ROUNDS: u32 = 6;
+/// Workgroups of a wide kernel, whose invocations stride over their items.
+const WIDE: u32 = 1056;
+const WIDE_ON_CPU: u32 = 16;
+
+/// What the stage takes beside the dualized mesh, all on the device.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// The mapping that gave the sites their pixels.
+    pub mapping: &'a GridMapping,
+    /// All points by input index.
+    pub points: View<'a, DVec2>,
+    /// The input index of each point in the new order, sites first.
+    pub order: View<'a, u32>,
+    /// The pixel of each site, and of further points perhaps.
+    pub pixels: View<'a, [u16; 2]>,
+    /// How many sites there are.
+    pub sites: View<'a, u32>,
+}
+
+/// The kernels of the stage on one device.
+#[derive(Debug)]
+pub struct Stage {
+    pub(super) device: Device,
+    pub(super) groups: [u32; 3],
+    shift_move: Kernel<ShiftMove>,
+    pin_triangles: Kernels<PinTriangles>,
+    pin_stars: Kernels<PinStars>,
+    unpin_stars: Kernels<UnpinStars>,
+    unpin_finish: Kernel<UnpinFinish>,
+    pub(super) advance: Kernel<ShiftAdvance>,
+    pub(super) elect: Kernel<TakeoutElect>,
+    pub(super) cut: Kernels<TakeoutCut>,
+    pub(super) link: Kernel<TakeoutLink>,
+    pub(super) heirs: Kernel<TakeoutHeirs>,
+}
+
+impl Stage {
+    /// Compiles the kernels.
+    ///
+    /// # Errors
+    ///
+    /// Those of the device.
+    pub fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
+        let wide = if device.info().kind == DeviceKind::Cpu { WIDE_ON_CPU } else { WIDE };
+        Ok(Self {
+            device: device.clone(),
+            groups: [wide, 1, 1],
+            shift_move: Kernel::new(device, &[])?,
+            pin_triangles: arithmetic.kernels(device, &[])?,
+            pin_stars: arithmetic.kernels(device, &[])?,
+            unpin_stars: arithmetic.kernels(device, &[])?,
+            unpin_finish: Kernel::new(device, &[])?,
+            advance: Kernel::new(device, &[])?,
+            elect: Kernel::new(device, &[])?,
+            cut: arithmetic.kernels(device, &[])?,
+            link: Kernel::new(device, &[])?,
+            heirs: Kernel::new(device, &[])?,
+        })
+    }
+
+    /// What [`Stage::buffers`] will hold.
+    pub fn estimate(sites: usize) -> Estimate {
+        super::shift_buffers::estimate(sites)
+    }
+
+    /// Results and scratch memory for up to so many sites, at least one.
+    ///
+    /// # Errors
+    ///
+    /// If the memory cannot be had: then before any of it is allocated.
+    pub fn buffers(&self, sites: usize) -> Result<Buffers, Error> {
+        Buffers::new(&self.device, sites)
+    }
+
+    /// Steps 1 and 2: afterwards sites are where they stay until they are taken out.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stage::record`].
+    pub fn record_pin(
+        &self,
+        recording: &mut Recording,
+        input: Input<'_>,
+        mesh: &Mesh,
+        buffers: &Buffers,
+    ) -> Result<(), Error> {
+        buffers.check(input, mesh)?;
+        recording.fill(buffers.words.view(), 0);
+        let (words, state, pinned) = (buffers.words.view(), buffers.state.view(), buffers.all.view());
+        let (triangles, links) = (mesh.corners(), mesh.twins());
+        let positions: View<'_, [u32; 4]> = mesh.positions().cast();
+        let points: View<'_, [u32; 4]> = input.points.cast();
+        let deferred: View<'_, u32> = buffers.edges.view().cast();
+        let arguments = ShiftMoveArgs {
+            points,
+            order: input.order,
+            positions,
+            state,
+            sites: input.sites,
+            count: input.points.len() as u32,
+            limit: buffers.sites as u32,
+        };
+        recording.dispatch(&self.shift_move, self.groups, &arguments);
+
+        let all = PinTrianglesArgs {
+            triangles,
+            positions,
+            state,
+            pinned,
+            deferred,
+            words,
+            listed: None,
+            slots: mesh.slots(),
+            limit: mesh.capacity().min(deferred.len()) as u32,
+            entry: 0,
+        };
+        let listed = PinTrianglesArgs { listed: Some(deferred), ..all };
+        recording.dispatch(&self.pin_triangles.first, self.groups, &all);
+        if let Some(rest) = &self.pin_triangles.rest {
+            recording.dispatch(rest, self.groups, &listed);
+        }
+        let [translation_x, translation_y] = input.mapping.translation();
+        let bound = buffers.sites as u32;
+        recording.repeat_ahead("pinning", buffers.word(Word::PinLeft)?, bound, 1, 1, |body| {
+            for round in 0..PIN_ROUNDS {
+                let arguments = PinStarsArgs {
+                    triangles,
+                    links,
+                    positions,
+                    state,
+                    pinned,
+                    deferred,
+                    words,
+                    pixels: input.pixels.cast(),
+                    translation_x,
+                    translation_y,
+                    exponent: input.mapping.exponent(),
+                    half_side: input.mapping.side() / 2,
+                    round,
+                };
+                body.dispatch(&self.pin_stars.first, self.groups, &arguments);
+                if let Some(rest) = &self.pin_triangles.rest {
+                    body.dispatch(rest, self.groups, &PinTrianglesArgs { entry: round + 1, ..listed });
+                }
+            }
+            self.record_advance(body, mesh, buffers, Row::Pin, PIN_ROUNDS);
+            for round in 0..UNPIN_ROUNDS {
+                let [waiting, later] = buffers.lists(round);
+                let arguments = UnpinStarsArgs {
+                    triangles,
+                    links,
+                    positions,
+                    state,
+                    points,
+                    order: input.order,
+                    all: pinned,
+                    waiting,
+                    later,
+                    deferred,
+                    words,
+                    round,
+                    again: 0,
+                };
+                body.dispatch(&self.unpin_stars.first, self.groups, &arguments);
+                if let Some(rest) = &self.unpin_stars.rest {
+                    body.dispatch(rest, self.groups, &UnpinStarsArgs { again: 1, ..arguments });
+                }
+            }
+            self.record_advance(body, mesh, buffers, Row::Unpin, UNPIN_ROUNDS);
+        });
+        let [stuck, _] = buffers.lists(0);
+        let arguments = UnpinFinishArgs { triangles, state, all: pinned, stuck, words };
+        recording.dispatch(&self.unpin_finish, self.groups, &arguments);
+        Ok(())
+    }
+
+    pub(super) fn record_advance(&self, body: &mut Recording, mesh: &Mesh, buffers: &Buffers, phase: Row, rounds: u32) {
+        let (words, slots) = (buffers.words.view(), mesh.slots());
+        let arguments = ShiftAdvanceArgs { words, slots, phase: phase as u32, rounds };
+        body.dispatch(&self.advance, [1, 1, 1], &arguments);
+    }
+}

@@ -144,7 +144,7 @@ fn start(mesh: &GhostMesh, h: u32, pinned: &[bool]) -> Option<u32> {
 }
 
 /// Steps 3 and 4: takes out the origin of `start`; the slots that become free.
-fn remove(mesh: &mut GhostMesh, at: &[DVec2], start: u32) -> Result<[u32; 2], DualizeError> {
+pub(super) fn remove(mesh: &mut GhostMesh, at: &[DVec2], start: u32) -> Result<[u32; 2], DualizeError> {
     let v = mesh.origin(start);
     let mut left = star(mesh, start).count();
     let to_ghost = star(mesh, start).find(|&h| mesh.destination(h) == GHOST);

@@ -1,0 +1,123 @@
+//! How fast stage 3 is on a device: medians of five, by timestamps, after the result was held against the reference.
+//! `shift_speed [points]...`; a trailing `?` leaves the reference out, as in `10000000?`. `POLDER_DEVICE` names the device.
+
+use polder_dualize::gpu::{dualize, shift};
+use polder_dualize::{DVec2, reference};
+use polder_flip::gpu::{Arithmetic, Mesh};
+use polder_flip::reference::close_hull;
+use polder_mesh::GhostMesh;
+use polder_voronoi::{GridMapping, Options};
+use polder_vulkan::{Buffer, Device, DeviceOptions, Engine, Recording, RunOptions};
+use std::collections::BTreeMap;
+
+const RUNS: usize = 5;
+
+type Failed = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failed> {
+    let device = Device::open(&DeviceOptions::default())?;
+    println!("{}", device.info());
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let cases = if arguments.is_empty() { vec!["20000".to_owned()] } else { arguments };
+    for case in cases {
+        measure(&device, case.trim_end_matches('?').parse()?, !case.ends_with('?'))?;
+    }
+    Ok(())
+}
+
+/// Points anywhere in a square.
+fn uniform(count: usize) -> Vec<DVec2> {
+    let mut state = 1_u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state ^ (state >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 11) as f64
+    };
+    (0..count).map(|_| DVec2::new(next(), next())).collect()
+}
+
+fn measure(device: &Device, count: usize, check: bool) -> Result<(), Failed> {
+    let points = uniform(count);
+    let mapping = GridMapping::fit(&points, &Options::default())?;
+    let mut engine = Engine::new(device)?;
+    let uploaded = Buffer::new(device, "points", count)?;
+    engine.upload(uploaded.view(), &points)?;
+    let voronoi = polder_voronoi::gpu::Stage::new(device)?;
+    let diagram = voronoi.buffers(count, mapping.size())?;
+    let dual = dualize::Stage::new(device)?;
+    let dual_buffers = dual.buffers(mapping.size())?;
+    let mesh = Mesh::new(device, count)?;
+    let sites = diagram.site_count()?;
+
+    let mut recording = Recording::new(device);
+    voronoi.record(&mut recording, &mapping, uploaded.view(), &diagram)?;
+    let (size, colors, pixels) = (mapping.size(), diagram.colors(), diagram.pixels());
+    let input = dualize::Input { size, colors, pixels, sites };
+    let output = dualize::Output { triangles: mesh.triangles(), links: mesh.links(), slots: mesh.slots() };
+    let read = dual.record(&mut recording, input, output, &dual_buffers)?;
+    read.result(&engine.run(&recording, &RunOptions::default())?)?;
+    let order = engine.download_vec(diagram.order())?;
+    let all_pixels = engine.download_vec(pixels)?;
+    let site_count = engine.download_vec(sites)?[0] as usize;
+    let corners: Vec<DVec2> = all_pixels.iter().map(|p| DVec2::from(p.map(f64::from))).collect();
+    let mut start: GhostMesh = mesh.download(&mut engine)?;
+    close_hull(&mut start, &corners)?;
+
+    let stage = shift::Stage::new(device, Arithmetic::of(device)?)?;
+    let buffers = stage.buffers(count)?;
+    let input = shift::Input { mapping: &mapping, points: uploaded.view(), order: diagram.order(), pixels, sites };
+    let mut pin = Recording::new(device);
+    stage.record_pin(&mut pin, input, &mesh, &buffers)?;
+    let mut out = Recording::new(device);
+    stage.record_take_out(&mut out, input, &mesh, &buffers)?;
+    let read = buffers.read(&mut out);
+    let options = RunOptions { timestamps: true, ..RunOptions::default() };
+    let mut times: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    let mut totals = [Vec::new(), Vec::new()];
+    let mut closed = GhostMesh::default();
+    let mut counts = shift::Counts::default();
+    for run in 0..RUNS {
+        mesh.upload(&mut engine, &start, &corners)?;
+        let pinned = engine.run(&pin, &options)?;
+        let at = engine.download_vec(mesh.positions())?;
+        if run == 0 {
+            closed.clone_from(&start);
+            close_hull(&mut closed, &at)?;
+        }
+        mesh.upload(&mut engine, &closed, &at)?;
+        let taken = engine.run(&out, &options)?;
+        if run == 0 {
+            counts = read.result(&taken)?;
+        }
+        for (k, report) in [pinned, taken].iter().enumerate() {
+            totals[k].push(report.timings.total().as_secs_f64() * 1e3);
+            for (kernel, timing) in report.timings.iter() {
+                let name = format!("{k} {kernel:<20} {:>4} x", timing.count);
+                times.entry(name).or_default().push(timing.total_ns as f64 / 1e6);
+            }
+        }
+    }
+    let median = |mut times: Vec<f64>| {
+        times.sort_by(f64::total_cmp);
+        times[times.len() / 2]
+    };
+    println!("{count} points, {site_count} sites, {} bytes: {counts:?}", shift::Stage::estimate(count).bytes());
+    let [pin, out] = totals.map(median);
+    println!("  pin and unpin {pin:.3} ms, take out {out:.3} ms");
+    for (name, times) in times {
+        println!("    {name} {:>9.4} ms in all", median(times));
+    }
+    if check {
+        let positions: Vec<DVec2> = order.iter().map(|&i| points[i as usize]).collect();
+        let centers: Vec<DVec2> = all_pixels[..site_count].iter().map(|p| mapping.center(p.map(u32::from))).collect();
+        let expected = reference::shift(start, &centers, &positions)?;
+        let found = (counts.bad, counts.stuck, counts.rounds);
+        let same = found == (expected.bad as u64, expected.stuck as u64, expected.rounds)
+            && engine.download_vec(buffers.heirs())?[..site_count] == expected.heirs
+            && mesh.download(&mut engine)? == expected.mesh;
+        println!("  the reference gives the same: {same}");
+        if !same {
+            return Err("the device gives another result".into());
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,34 @@
+// Centers of pixels, in integers: the bits of `GridMapping::center`.
+#ifndef CENTER_GLSL
+#define CENTER_GLSL
+
+#include "buffers.glsl"
+
+// The bits of units * 2^exponent, which is a double: units have up to 54 bits, the last of them zero if they are so many,
+// and the exponent is at least -1074.
+uvec2 double_bits(int64_t units, int exponent) {
+    uint64_t magnitude = uint64_t(units < 0 ? -units : units);
+    uvec2 halves = unpackUint2x32(magnitude);
+    if (magnitude == 0ul) {
+        return uvec2(0u);
+    }
+    int top = halves.y != 0u ? 32 + findMSB(halves.y) : findMSB(halves.x);
+    uint64_t bits;
+    if (top + exponent >= -1022) {
+        uint64_t significand = top <= 52 ? magnitude << (52 - top) : magnitude >> (top - 52);
+        bits = significand & 0xffffffffffffful | uint64_t(top + exponent + 1023) << 52;
+    } else {
+        bits = magnitude << (exponent + 1074);
+    }
+    return unpackUint2x32(bits) | uvec2(0u, units < 0 ? 0x80000000u : 0u);
+}
+
+// `pixel` is y << 16 | x, `half_side` half the side of a pixel in units.
+uvec4 center_of(uint pixel, int64_t translation_x, int64_t translation_y, int exponent, uint half_side) {
+    uvec2 odd = 2u * uvec2(pixel & 0xffffu, pixel >> 16) + 1u;
+    int64_t x = translation_x + int64_t(uint64_t(odd.x) * half_side);
+    int64_t y = translation_y + int64_t(uint64_t(odd.y) * half_side);
+    return uvec4(double_bits(x, exponent), double_bits(y, exponent));
+}
+
+#endif

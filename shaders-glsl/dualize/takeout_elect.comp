@@ -1,0 +1,62 @@
+// Take out: finds the pinned sites that go in this round, those without a pinned neighbor of lower priority; each with the
+// half-edge to its heir. The others wait.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shift.glsl"
+
+layout(push_constant, std430) uniform Args {
+    ReadU32 triangles;
+    ReadU32 links;
+    ReadU32 state;
+    ReadU32 waiting; // sites
+    WriteU32 later;  // sites, for the next round
+    WriteU32 winners; // half-edges
+    U32 words;
+    uint round; // of the batch
+};
+
+void main() {
+    uint chain = words.at[CHAIN];
+    // Set in an earlier round: the mesh is a chain.
+    if (chain != 0u && chain <= round) {
+        return;
+    }
+    uint count = words.at[OUT_COUNTS + round];
+    for (uint i = first_item(); i < count; i += item_stride()) {
+        uint v = waiting.at[i];
+        uint mine = priority(v);
+        uint start = state.at[v] & PLACE;
+        bool beaten = false;
+        bool finite = false;
+        uint heir = NONE;
+        uint to_heir = start;
+        uint h = start;
+        uint steps = 0u;
+        do {
+            uint u = destination(triangles, h);
+            if (u < DELETED) {
+                uint pinned = state.at[u] & PINNED;
+                if (pinned != 0u && priority(u) < mine) {
+                    beaten = true;
+                    break;
+                }
+                if ((pinned | u) < heir) {
+                    heir = pinned | u;
+                    to_heir = h;
+                }
+                finite = finite || apex(triangles, h) < DELETED;
+            }
+            h = rotate_ccw(links, h);
+            steps++;
+        } while (h != start && steps < MOST_TRIANGLES_OF_STAR);
+        if (beaten) {
+            later.at[append(words, OUT_COUNTS + round + 1u)] = v;
+        } else if (h != start) {
+            note_broken(words, v);
+        } else if (!finite) {
+            words.at[CHAIN] = round + 1u;
+        } else {
+            winners.at[append(words, OUT_WINNERS + round)] = to_heir;
+        }
+    }
+}

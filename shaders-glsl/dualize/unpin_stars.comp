@@ -1,0 +1,69 @@
+// Unpin: tries the pinned sites whose turn it is at their true positions, and frees those around which the triangles stay
+// counterclockwise. The others wait for the next round.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shift.glsl"
+#include "predicates.glsl"
+
+layout(push_constant, std430) uniform Args {
+    ReadU32 triangles;
+    ReadU32 links;
+    Points positions;
+    U32 state;
+    ReadPositions points; // by input index
+    ReadU32 order;
+    ReadU32 all;   // half-edges out of the pinned sites, for the first round
+    U32 waiting;   // half-edges out of sites not tried yet, for other rounds
+    U32 later;     // the same for the next round
+    U32 deferred;  // half-edges out of sites that the other kernel decides
+    U32 words;
+    uint round;    // of the batch
+    uint again;    // whether the deferred ones are to be decided
+};
+
+void main() {
+    uint count = words.at[again != 0u ? UNPIN_DEFERRED + round : UNPIN_COUNTS + round];
+    bool is_first = round == 0u && words.at[UNPIN_STARTED] == 1u;
+    uint stamp = words.at[UNPIN_BASE] + round;
+    for (uint i = first_item(); i < count; i += item_stride()) {
+        uint start = again != 0u ? deferred.at[i] : is_first ? all.at[i] : waiting.at[i];
+        uint v = origin(triangles, start);
+        uint mine = priority(v);
+        uvec4 at = points.at[order.at[v]];
+        bool beaten = false;
+        bool stuck = false;
+        bool open = false;
+        uint h = start;
+        uint steps = 0u;
+        do {
+            uint u = destination(triangles, h);
+            uint w = apex(triangles, h);
+            if (u < DELETED && priority(u) < mine && is_waiting(state.at[u], stamp)) {
+                beaten = true;
+                break;
+            }
+            if (!stuck && max(u, w) < DELETED) {
+                int sign = orient2d(at, positions.at[u], positions.at[w]);
+                open = open || sign == UNDECIDED;
+                stuck = sign != 1 && sign != UNDECIDED;
+            }
+            h = rotate_ccw(links, h);
+            steps++;
+        } while (h != start && steps < MOST_TRIANGLES_OF_STAR);
+        if (beaten) {
+            later.at[append(words, UNPIN_COUNTS + round + 1u)] = start;
+            continue;
+        }
+        if (h != start) {
+            note_broken(words, v);
+        }
+        if (open && !stuck) {
+            deferred.at[append(words, UNPIN_DEFERRED + round)] = start;
+            continue;
+        }
+        if (!stuck) {
+            positions.at[v] = at;
+        }
+        state.at[v] = PINNED | TRIED | (stuck ? 0u : FREED) | stamp;
+    }
+}

@@ -1,0 +1,451 @@
+//! Each kernel of stage 3 against the reference of its name, bit for bit; lists in order of arrival as sets.
+#![cfg(feature = "gpu-tests")]
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod shift_gpu_support;
+mod vulkan_support;
+
+use bytemuck::Zeroable;
+use polder_dualize::kernels::*;
+use polder_dualize::reference::kernels::{shift, takeout};
+use polder_mesh::GhostMesh;
+use polder_vulkan::Shader;
+use shift::{PINNED, ROW, WORDS, Word};
+use shift_gpu_support::{Case, Device, cases, sorted};
+
+const NONE: u32 = u32::MAX;
+
+/// The counts of a batch: so many items in the first entry of a row.
+fn words(row: usize, entry: usize, count: usize) -> Vec<u32> {
+    let mut words = vec![0; WORDS];
+    words[row + entry] = count as u32;
+    words
+}
+
+/// All sites at their true positions, and what the first test pins.
+fn moved(case: &Case) -> (Vec<u32>, Vec<u32>) {
+    let (_, state) = shift::shift_move(&case.points, &case.order, case.centers.len());
+    let pinned = shift::pin_triangles(&case.mesh, &case.truth, &state, 0..case.mesh.slots());
+    (state, pinned)
+}
+
+/// The state of sites that are on a list of half-edges.
+fn listed(mesh: &GhostMesh, state: &mut [u32], list: &[u32]) {
+    (0..).zip(list).for_each(|(place, &h)| state[mesh.origin(h) as usize] = PINNED | place);
+}
+
+/// What is left of a case after pinning and unpinning, by the kernels' references.
+struct Stuck {
+    mesh: GhostMesh,
+    positions: Vec<glam::DVec2>,
+    state: Vec<u32>,
+    sites: Vec<u32>,
+}
+
+fn stuck(case: &Case) -> Stuck {
+    let (mut state, mut list) = moved(case);
+    let mut positions = case.truth.clone();
+    let mut begin = 0;
+    listed(&case.mesh, &mut state, &list);
+    while begin < list.len() {
+        let fresh = list[begin..].to_vec();
+        begin = list.len();
+        list.extend(shift::pin_stars(&case.mesh, &case.centers, &mut positions, &state, &fresh));
+        listed(&case.mesh, &mut state, &list);
+    }
+    let (mut waiting, mut round) = (list.clone(), 0);
+    while !waiting.is_empty() {
+        waiting = shift::unpin_stars(&case.mesh, &case.truth, &mut positions, &mut state, &waiting, round);
+        round += 1;
+    }
+    let (_, sites) = shift::unpin_finish(&case.mesh, &mut state, &list);
+    let mut mesh = case.mesh.clone();
+    polder_flip::reference::close_hull(&mut mesh, &positions).unwrap();
+    Stuck { mesh, positions, state, sites }
+}
+
+/// The rounds of taking out: before each, what it starts from and whom it elects.
+fn each_round(case: &Case, mut look: impl FnMut(&Stuck, &takeout::Elected)) {
+    let mut now = stuck(case);
+    while !now.sites.is_empty() {
+        let elected = takeout::takeout_elect(&now.mesh, &now.state, &now.sites);
+        look(&now, &elected);
+        if elected.chain {
+            return;
+        }
+        takeout::takeout_cut(&mut now.mesh, &now.positions, &mut now.state, &elected.winners).unwrap();
+        now.sites = elected.later;
+        let half_edges = now.mesh.half_edge_of_vertex(now.state.len());
+        now.sites.iter().for_each(|&v| now.state[v as usize] = PINNED | half_edges[v as usize]);
+    }
+}
+
+#[test]
+fn shift_move() {
+    let mut device = Device::open();
+    for case in cases() {
+        let held = device.hold(&case.mesh, &case.truth);
+        let (points, order) = (device.gpu.buffer(&case.points), device.gpu.buffer(&case.order));
+        let sites = device.gpu.buffer(&[case.centers.len() as u32]);
+        let state = device.gpu.buffer(&vec![7_u32; case.truth.len()]);
+        let positions = device.gpu.buffer(&vec![glam::DVec2::zeroed(); case.truth.len()]);
+        let arguments = ShiftMoveArgs {
+            points: points.view().cast(),
+            order: order.view(),
+            positions: positions.view().cast(),
+            state: state.view(),
+            sites: sites.view(),
+            count: case.points.len() as u32,
+            limit: held.sites as u32,
+        };
+        device.run::<ShiftMove>(&arguments);
+        let expected = shift::shift_move(&case.points, &case.order, case.centers.len());
+        assert_eq!(device.gpu.fetch(positions.view()), expected.0, "{}", case.name);
+        assert_eq!(device.gpu.fetch(state.view())[..case.centers.len()], expected.1, "{}", case.name);
+    }
+}
+
+#[test]
+fn pin_triangles() {
+    let mut device = Device::open();
+    let mut pinned = 0;
+    for case in cases() {
+        let (state, expected) = moved(&case);
+        for arithmetic in device.arithmetics() {
+            let held = device.hold(&case.mesh, &case.truth);
+            let (states, list) = (device.gpu.buffer(&state), device.gpu.buffer(&vec![7_u32; case.truth.len()]));
+            let deferred = device.gpu.buffer(&vec![7_u32; case.mesh.slots().max(1)]);
+            let counts = device.gpu.buffer(&[0; WORDS]);
+            let arguments = PinTrianglesArgs {
+                triangles: held.mesh.corners(),
+                positions: held.mesh.positions().cast(),
+                state: states.view(),
+                pinned: list.view(),
+                deferred: deferred.view(),
+                words: counts.view(),
+                listed: None,
+                slots: held.mesh.slots(),
+                limit: case.mesh.slots() as u32,
+                entry: 0,
+            };
+            let again = PinTrianglesArgs { listed: Some(deferred.view()), ..arguments };
+            device.run_both::<PinTriangles>(arithmetic, &arguments, &again);
+            let count = device.gpu.fetch(counts.view())[Word::PinCounts as usize] as usize;
+            let list = device.gpu.fetch(list.view())[..count].to_vec();
+            let mut wanted = state.clone();
+            listed(&case.mesh, &mut wanted, &list);
+            assert_eq!(device.gpu.fetch(states.view()), wanted, "{}", case.name);
+            let origins = |list: &[u32]| sorted(list.iter().map(|&h| case.mesh.origin(h)).collect());
+            assert_eq!(origins(&list), origins(&expected), "{}", case.name);
+            pinned += count;
+        }
+    }
+    assert!(pinned > 1000, "{pinned}");
+}
+
+#[test]
+fn pin_stars() {
+    let mut device = Device::open();
+    let mut pinned = 0;
+    for case in cases() {
+        let (mut state, list) = moved(&case);
+        listed(&case.mesh, &mut state, &list);
+        let mut positions = case.truth.clone();
+        let expected = shift::pin_stars(&case.mesh, &case.centers, &mut positions, &state, &list);
+        let held = device.hold(&case.mesh, &case.truth);
+        let (states, deferred) = (device.gpu.buffer(&state), device.gpu.buffer(&vec![7_u32; case.mesh.slots().max(1)]));
+        let mut entries = list.clone();
+        entries.resize(case.truth.len(), 7);
+        let pixels = device.gpu.buffer(&case.pixels);
+        let (entries, counts) =
+            (device.gpu.buffer(&entries), device.gpu.buffer(&words(Word::PinCounts as usize, 0, list.len())));
+        let [translation_x, translation_y] = case.mapping.translation();
+        let arguments = PinStarsArgs {
+            triangles: held.mesh.corners(),
+            links: held.mesh.twins(),
+            positions: held.mesh.positions().cast(),
+            state: states.view(),
+            pinned: entries.view(),
+            deferred: deferred.view(),
+            words: counts.view(),
+            pixels: pixels.view().cast(),
+            translation_x,
+            translation_y,
+            exponent: case.mapping.exponent(),
+            half_side: case.mapping.side() / 2,
+            round: 0,
+        };
+        device.run_deciding::<PinStars>(&arguments);
+        let bits = |points: &[glam::DVec2]| points.iter().map(|p| p.to_array().map(f64::to_bits)).collect::<Vec<_>>();
+        assert_eq!(bits(&device.gpu.fetch(held.mesh.positions())), bits(&positions), "{}", case.name);
+        let count = device.gpu.fetch(counts.view())[Word::PinCounts as usize + 1] as usize;
+        let found = device.gpu.fetch(entries.view())[list.len()..][..count].to_vec();
+        let origins = |list: &[u32]| sorted(list.iter().map(|&h| case.mesh.origin(h)).collect());
+        assert_eq!(origins(&found), origins(&expected), "{}", case.name);
+        listed(&case.mesh, &mut state, &[list, found].concat());
+        assert_eq!(device.gpu.fetch(states.view()), state, "{}", case.name);
+        pinned += count;
+    }
+    assert!(pinned > 0, "{pinned}");
+}
+
+#[test]
+fn unpin_stars() {
+    let mut device = Device::open();
+    for case in cases() {
+        for arithmetic in device.arithmetics() {
+            let (mut state, list) = moved(&case);
+            listed(&case.mesh, &mut state, &list);
+            let mut positions = case.truth.clone();
+            list.iter().map(|&h| case.mesh.origin(h) as usize).for_each(|v| positions[v] = case.centers[v]);
+            let held = device.hold(&case.mesh, &positions);
+            let states = device.gpu.buffer(&state);
+            let (points, order) = (device.gpu.buffer(&case.points), device.gpu.buffer(&case.order));
+            let room = vec![7_u32; case.truth.len()];
+            let [later, deferred] = [0; 2].map(|_| device.gpu.buffer(&room));
+            let mut entries = list.clone();
+            entries.resize(case.truth.len(), 7);
+            let entries = device.gpu.buffer(&entries);
+            let mut counts = words(Word::UnpinCounts as usize, 3, list.len());
+            counts[Word::UnpinBase as usize] = 40;
+            let counts = device.gpu.buffer(&counts);
+            let arguments = UnpinStarsArgs {
+                triangles: held.mesh.corners(),
+                links: held.mesh.twins(),
+                positions: held.mesh.positions().cast(),
+                state: states.view(),
+                points: points.view().cast(),
+                order: order.view(),
+                all: order.view(),
+                waiting: entries.view(),
+                later: later.view(),
+                deferred: deferred.view(),
+                words: counts.view(),
+                round: 3,
+                again: 0,
+            };
+            let again = UnpinStarsArgs { again: 1, ..arguments };
+            device.run_both::<UnpinStars>(arithmetic, &arguments, &again);
+            let expected = shift::unpin_stars(&case.mesh, &case.truth, &mut positions, &mut state, &list, 43);
+            assert_eq!(device.gpu.fetch(held.mesh.positions()), positions, "{}", case.name);
+            assert_eq!(device.gpu.fetch(states.view()), state, "{}", case.name);
+            let count = device.gpu.fetch(counts.view())[Word::UnpinCounts as usize + 4] as usize;
+            assert_eq!(sorted(device.gpu.fetch(later.view())[..count].to_vec()), sorted(expected), "{}", case.name);
+        }
+    }
+}
+
+#[test]
+fn unpin_finish() {
+    let mut device = Device::open();
+    for case in cases() {
+        let (mut state, list) = moved(&case);
+        for (i, &h) in list.iter().enumerate() {
+            state[case.mesh.origin(h) as usize] = PINNED | shift::TRIED | if i % 3 == 0 { shift::FREED } else { 0 } | 5;
+        }
+        let held = device.hold(&case.mesh, &case.truth);
+        let (states, all) = (device.gpu.buffer(&state), device.gpu.buffer(&[&list[..], &[7]].concat()));
+        let stuck = device.gpu.buffer(&vec![7_u32; case.truth.len()]);
+        let counts = device.gpu.buffer(&words(Word::Bad as usize, 0, list.len()));
+        let arguments = UnpinFinishArgs {
+            triangles: held.mesh.corners(),
+            state: states.view(),
+            all: all.view(),
+            stuck: stuck.view(),
+            words: counts.view(),
+        };
+        device.run::<UnpinFinish>(&arguments);
+        let (sites, expected) = shift::unpin_finish(&case.mesh, &mut state, &list);
+        assert_eq!(device.gpu.fetch(all.view())[..list.len()], sites, "{}", case.name);
+        assert_eq!(device.gpu.fetch(states.view()), state, "{}", case.name);
+        let count = device.gpu.fetch(counts.view())[Word::OutCounts as usize] as usize;
+        assert_eq!(sorted(device.gpu.fetch(stuck.view())[..count].to_vec()), expected, "{}", case.name);
+    }
+}
+
+#[test]
+fn shift_advance() {
+    let mut device = Device::open();
+    for seed in 0..200 {
+        let (phase, rounds) = (seed as u32 % 3, 2 + seed as u32 % 5 * 2);
+        let mut words: Vec<u32> = vulkan_support::words(seed, WORDS).iter().map(|w| w % 9 * (w >> 8 & 1)).collect();
+        let buffer = device.gpu.buffer(&words);
+        let slots = device.gpu.buffer(&[99_u32]);
+        let arguments = ShiftAdvanceArgs { words: buffer.view(), slots: slots.view(), phase, rounds };
+        device.run::<ShiftAdvance>(&arguments);
+        let mut expected = 99;
+        shift::shift_advance(&mut words, &mut expected, phase, rounds);
+        assert_eq!(device.gpu.fetch(buffer.view()), words, "{phase}");
+        assert_eq!(device.gpu.fetch(slots.view()), [expected]);
+    }
+}
+
+#[test]
+fn takeout_elect() {
+    let mut device = Device::open();
+    let (mut winners_in_all, mut chains) = (0, 0);
+    for case in cases() {
+        each_round(&case, |now, expected| {
+            let held = device.hold(&now.mesh, &now.positions);
+            let room = vec![7_u32; now.state.len()];
+            let [winners, later] = [0; 2].map(|_| device.gpu.buffer(&room));
+            let (states, waiting) = (device.gpu.buffer(&now.state), device.gpu.buffer(&now.sites));
+            let counts = device.gpu.buffer(&words(Word::OutCounts as usize, 2, now.sites.len()));
+            let arguments = TakeoutElectArgs {
+                triangles: held.mesh.corners(),
+                links: held.mesh.twins(),
+                state: states.view(),
+                waiting: waiting.view(),
+                later: later.view(),
+                winners: winners.view(),
+                words: counts.view(),
+                round: 2,
+            };
+            device.run::<TakeoutElect>(&arguments);
+            let counts = device.gpu.fetch(counts.view());
+            let found = takeout::Elected {
+                winners: sorted(device.gpu.fetch(winners.view())[..counts[192 + 2] as usize].to_vec()),
+                later: sorted(device.gpu.fetch(later.view())[..counts[Word::OutCounts as usize + 3] as usize].to_vec()),
+                chain: counts[Word::Chain as usize] == 3,
+            };
+            let [winners, later] = [&expected.winners, &expected.later].map(|list| sorted(list.clone()));
+            winners_in_all += winners.len();
+            chains += usize::from(expected.chain);
+            assert_eq!(found, takeout::Elected { winners, later, chain: expected.chain }, "{}", case.name);
+        });
+    }
+    assert!(winners_in_all > 500 && chains > 0, "{winners_in_all} {chains}");
+}
+
+/// Cutting and linking, which give a mesh together.
+fn cut_and_link(only_cut: bool) {
+    let mut device = Device::open();
+    for case in cases() {
+        each_round(&case, |now, elected| {
+            for arithmetic in device.arithmetics() {
+                let held = device.hold(&now.mesh, &now.positions);
+                let (sites, slots) = (now.state.len(), now.mesh.slots());
+                let states = device.gpu.buffer(&now.state);
+                let mut winners = elected.winners.clone();
+                winners.push(7);
+                let (winners, deferred) = (device.gpu.buffer(&winners), device.gpu.buffer(&vec![7_u32; sites]));
+                let freed = device.gpu.buffer(&vec![[NONE; 2]; sites]);
+                let (edge_of, edges) =
+                    (device.gpu.buffer(&vec![7_u32; slots]), device.gpu.buffer(&vec![[7_u32; 2]; slots]));
+                let counts = device.gpu.buffer(&words(192, 1, elected.winners.len()));
+                let cut = TakeoutCutArgs {
+                    triangles: held.mesh.corners(),
+                    links: held.mesh.twins(),
+                    positions: held.mesh.positions().cast(),
+                    state: states.view(),
+                    winners: winners.view(),
+                    deferred: deferred.view(),
+                    freed: freed.view().cast(),
+                    edge_of: edge_of.view(),
+                    edges: edges.view(),
+                    words: counts.view(),
+                    round: 1,
+                    again: 0,
+                };
+                device.run_both::<TakeoutCut>(arithmetic, &cut, &TakeoutCutArgs { again: 1, ..cut });
+                let (mut mesh, mut state) = (now.mesh.clone(), now.state.clone());
+                let expected = takeout::takeout_cut(&mut mesh, &now.positions, &mut state, &elected.winners).unwrap();
+                let found = device.gpu.fetch(freed.view());
+                assert!(expected.iter().all(|&(v, slots)| found[v as usize] == slots), "{}", case.name);
+                assert_eq!(device.gpu.fetch(states.view()), state, "{}", case.name);
+
+                let before = held.mesh.download(&mut device.gpu.engine).unwrap();
+                assert!(before.triangles == mesh.triangles, "{}: triangles", case.name);
+                let link = TakeoutLinkArgs {
+                    triangles: held.mesh.corners(),
+                    links: held.mesh.twins(),
+                    state: states.view(),
+                    edge_of: edge_of.view(),
+                    edges: edges.view(),
+                    words: counts.view(),
+                    round: 1,
+                };
+                device.run::<TakeoutLink>(&link);
+                let after = held.mesh.download(&mut device.gpu.engine).unwrap();
+                if only_cut {
+                    assert!(after == mesh, "{}: links", case.name);
+                    continue;
+                }
+                let count = device.gpu.fetch(counts.view())[256 + 1] as usize;
+                let edges = device.gpu.fetch(edges.view())[..count].to_vec();
+                let mut linked = before;
+                takeout::takeout_link(&mut linked, &mut state, &edges);
+                assert!(after == linked, "{}", case.name);
+                // Which of its half-edges a site is told of is left to chance.
+                let told = device.gpu.fetch(states.view());
+                assert!(told.iter().zip(&state).all(|(a, b)| a & PINNED == b & PINNED), "{}", case.name);
+                let is_out_of = |v: u32, word: u32| word & PINNED == 0 || after.origin(word ^ PINNED) == v;
+                assert!((0..).zip(&told).all(|(v, &word)| is_out_of(v, word)), "{}", case.name);
+            }
+        });
+    }
+}
+
+#[test]
+fn takeout_cut() {
+    cut_and_link(true);
+}
+
+#[test]
+fn takeout_link() {
+    cut_and_link(false);
+}
+
+#[test]
+fn takeout_heirs() {
+    let mut device = Device::open();
+    for case in cases() {
+        for is_empty in [false, true] {
+            let sites = case.centers.len() as u32;
+            // Each third site names a later one, which may be gone too.
+            let mut state: Vec<u32> = (0..sites)
+                .map(|v| if v % 3 == 0 && v + 3 < sites { v + 3 - u32::from(v % 7 == 0) } else { v })
+                .collect();
+            let all: Vec<u32> = (0..sites).filter(|v| v % 3 == 0).collect();
+            let held = device.hold(&case.mesh, &vec![glam::DVec2::ONE; case.truth.len()]);
+            if is_empty {
+                device.gpu.engine.upload(held.mesh.slots().slice(0..1).unwrap(), &[0]).unwrap();
+            } else if case.mesh.slots() == 0 {
+                continue;
+            }
+            let (states, entries) = (device.gpu.buffer(&state), device.gpu.buffer(&[&all[..], &[7]].concat()));
+            let taken = device.gpu.buffer(&vec![7_u32; sites as usize]);
+            let (points, order) = (device.gpu.buffer(&case.points), device.gpu.buffer(&case.order));
+            let mut counts = words(Word::Bad as usize, 0, all.len());
+            counts[Word::OutRounds as usize] = sites;
+            let (counts, count) = (device.gpu.buffer(&counts), device.gpu.buffer(&[sites]));
+            let arguments = TakeoutHeirsArgs {
+                state: states.view(),
+                all: entries.view(),
+                taken: taken.view(),
+                positions: held.mesh.positions().cast(),
+                points: points.view().cast(),
+                order: order.view(),
+                words: counts.view(),
+                sites: count.view(),
+                slots: held.mesh.slots(),
+                limit: sites,
+            };
+            device.run::<TakeoutHeirs>(&arguments);
+            let expected = takeout::takeout_heirs(&mut state, &all, is_empty);
+            assert_eq!(device.gpu.fetch(states.view()), state, "{}", case.name);
+            let found = device.gpu.fetch(counts.view())[16] as usize;
+            assert_eq!(sorted(device.gpu.fetch(taken.view())[..found].to_vec()), expected, "{}", case.name);
+            let positions = device.gpu.fetch(held.mesh.positions());
+            assert!(all.iter().all(|&v| positions[v as usize] == case.truth[v as usize]), "{}", case.name);
+        }
+    }
+}
+
+#[test]
+fn rows_do_not_overlap() {
+    let rows = [Word::PinCounts, Word::UnpinCounts, Word::OutCounts].map(|word| word as usize);
+    assert_eq!(rows, [ROW, 3 * ROW, 5 * ROW]);
+    assert_eq!(WORDS, 9 * ROW);
+    assert_eq!(ShiftAdvance::CODE.name, "shift_advance");
+}
