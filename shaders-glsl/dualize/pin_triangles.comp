@@ -1,4 +1,5 @@
-// Pin: tests triangles, all or those on a list, and pins the corners of every one that is not counterclockwise.
+// Pin: tests triangles, all or those on a list, and pins the corners of every one that is not counterclockwise. Of ghost
+// triangles, lists the edge that leads to the ghost.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shift.glsl"
@@ -13,6 +14,9 @@ layout(push_constant, std430) uniform Args {
     U32 words;
     MaybeReadU32 listed; // triangles
     ReadU32 slots;
+    U32 hull; // half-edges
+    U32 hull_count;
+    uint hull_limit;
     uint limit;
     uint entry; // that newly pinned sites are counted in
 };
@@ -25,6 +29,13 @@ void main() {
         uint t = all_slots ? i : listed.at[i];
         uvec3 at = corners(triangles, t);
         if (any(greaterThanEqual(at, uvec3(DELETED)))) {
+            if (at.x != DELETED) {
+                uint place = append(hull_count, 0u);
+                if (place < hull_limit) {
+                    // The edge whose destination is the ghost: the one after that opposite to it.
+                    hull.at[place] = next_edge(3u * t + (at.x == GHOST ? 0u : at.y == GHOST ? 1u : 2u));
+                }
+            }
             continue;
         }
         int sign = orient2d(point_at(positions, at.x), point_at(positions, at.y), point_at(positions, at.z));

@@ -116,6 +116,8 @@ fn pin_triangles() {
             let (states, list) = (device.gpu.buffer(&state), device.gpu.buffer(&vec![7_u32; case.truth.len()]));
             let deferred = device.gpu.buffer(&vec![7_u32; case.mesh.slots().max(1)]);
             let counts = device.gpu.buffer(&[0; WORDS]);
+            let hull = device.gpu.buffer(&vec![7_u32; case.mesh.slots().max(1)]);
+            let hull_count = device.gpu.buffer(&[0_u32]);
             let arguments = PinTrianglesArgs {
                 triangles: held.mesh.corners(),
                 positions: held.mesh.positions().cast(),
@@ -125,6 +127,9 @@ fn pin_triangles() {
                 words: counts.view(),
                 listed: None,
                 slots: held.mesh.slots(),
+                hull: hull.view(),
+                hull_count: hull_count.view(),
+                hull_limit: hull.len() as u32,
                 limit: case.mesh.slots() as u32,
                 entry: 0,
             };
@@ -137,6 +142,9 @@ fn pin_triangles() {
             assert_eq!(device.gpu.fetch(states.view()), wanted, "{}", case.name);
             let origins = |list: &[u32]| sorted(list.iter().map(|&h| case.mesh.origin(h)).collect());
             assert_eq!(origins(&list), origins(&expected), "{}", case.name);
+            let count_of_hull = device.gpu.fetch(hull_count.view())[0] as usize;
+            let found = sorted(device.gpu.fetch(hull.view())[..count_of_hull].to_vec());
+            assert_eq!(found, shift::hull_edges(&case.mesh), "{}", case.name);
             pinned += count;
         }
     }

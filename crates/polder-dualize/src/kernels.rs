@@ -294,7 +294,8 @@ impl Shader for PinStars {
     }
 }
 
-/// Pin: tests triangles, all or those on a list, and pins the corners of every one that is not counterclockwise.
+/// Pin: tests triangles, all or those on a list, and pins the corners of every one that is not counterclockwise. Of ghost
+/// triangles, lists the edge that leads to the ghost.
 #[derive(Debug, Clone, Copy)]
 pub enum PinTriangles {}
 
@@ -317,6 +318,12 @@ pub struct PinTrianglesArgs<'a> {
     pub listed: Option<View<'a, u32>>,
     /// read
     pub slots: View<'a, u32>,
+    /// read and written
+    pub hull: View<'a, u32>,
+    /// read and written
+    pub hull_count: View<'a, u32>,
+    /// a value
+    pub hull_limit: u32,
     /// a value
     pub limit: u32,
     /// a value
@@ -330,7 +337,7 @@ impl Shader for PinTriangles {
         name: "pin_triangles",
         words: include_spirv!("../spv/pin_triangles.spv"),
         without_float64: Some(include_spirv!("../spv/pin_triangles.integers.spv")),
-        argument_bytes: 72,
+        argument_bytes: 92,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "positions", offset: 8, access: Access::Read },
@@ -340,6 +347,8 @@ impl Shader for PinTriangles {
             BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
             BufferArgument { name: "listed", offset: 48, access: Access::Read },
             BufferArgument { name: "slots", offset: 56, access: Access::Read },
+            BufferArgument { name: "hull", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "hull_count", offset: 72, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -354,7 +363,7 @@ impl Shader for PinTriangles {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "a651e70583f2f0c6e9e8e45d0fe2e4fb30f3d7ee1c68b8cb44784ffb6b131a1f",
+        source_hash: "3f0a7cfe1927e130f5915dd9512a18a53393058f81250f66bd926e6d89726379",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -367,8 +376,11 @@ impl Shader for PinTriangles {
         encoder.buffer(40, args.words);
         encoder.optional(48, args.listed);
         encoder.buffer(56, args.slots);
-        encoder.value(64, args.limit);
-        encoder.value(68, args.entry);
+        encoder.buffer(64, args.hull);
+        encoder.buffer(72, args.hull_count);
+        encoder.value(80, args.hull_limit);
+        encoder.value(84, args.limit);
+        encoder.value(88, args.entry);
     }
 }
 

@@ -21,7 +21,7 @@
 use super::shift_buffers::{Row, Word};
 use crate::kernels::*;
 use glam::DVec2;
-use polder_flip::gpu::{Arithmetic, Kernels, Mesh};
+use polder_flip::gpu::{Arithmetic, EdgeList, Kernels, Mesh, Tally};
 use polder_voronoi::GridMapping;
 use polder_vulkan::{Device, DeviceKind, Error, Estimate, Kernel, Recording, View};
 
@@ -48,6 +48,17 @@ pub struct Input<'a> {
     pub pixels: View<'a, [u16; 2]>,
     /// How many sites there are.
     pub sites: View<'a, u32>,
+}
+
+/// The flips that close the hull: kernels, memory for as many slots as the mesh has, and where to count them.
+#[derive(Clone, Copy, Debug)]
+pub struct Flips<'a> {
+    /// The kernels.
+    pub stage: &'a polder_flip::gpu::Stage,
+    /// Their memory, over which [`record_start`](polder_flip::gpu::Stage::record_start) has been recorded.
+    pub buffers: &'a polder_flip::gpu::Buffers,
+    /// Flips are added to this.
+    pub tally: &'a Tally,
 }
 
 /// The kernels of the stage on one device.
@@ -105,7 +116,29 @@ impl Stage {
         Buffers::new(&self.device, sites)
     }
 
-    /// Steps 1 and 2: afterwards sites are where they stay until they are taken out.
+    /// The whole stage, over a dualized mesh: its triangles, links and slots. It writes the positions of all points, and
+    /// [`Buffers::heirs`], [`Buffers::freed`] and [`Buffers::taken`]. What the flips did is for their tally to say.
+    ///
+    /// # Errors
+    ///
+    /// If the parts are not of one size.
+    pub fn record(
+        &self,
+        recording: &mut Recording,
+        input: Input<'_>,
+        mesh: &Mesh,
+        flips: Flips<'_>,
+        buffers: &Buffers,
+    ) -> Result<Read, Error> {
+        let hull = flips.buffers.list();
+        self.record_pin(recording, input, mesh, hull, buffers)?;
+        flips.stage.record_close_hull(recording, mesh, flips.buffers, Some(hull), None, flips.tally)?;
+        self.record_take_out(recording, input, mesh, buffers)?;
+        Ok(buffers.read(recording))
+    }
+
+    /// Steps 1 and 2: afterwards sites are where they stay until they are taken out, and `hull` lists all edges to the
+    /// ghost.
     ///
     /// # Errors
     ///
@@ -115,10 +148,12 @@ impl Stage {
         recording: &mut Recording,
         input: Input<'_>,
         mesh: &Mesh,
+        hull: &EdgeList,
         buffers: &Buffers,
     ) -> Result<(), Error> {
         buffers.check(input, mesh)?;
         recording.fill(buffers.words.view(), 0);
+        hull.record_clear(recording);
         let (words, state, pinned) = (buffers.words.view(), buffers.state.view(), buffers.all.view());
         let (triangles, links) = (mesh.corners(), mesh.twins());
         let positions: View<'_, [u32; 4]> = mesh.positions().cast();
@@ -144,6 +179,9 @@ impl Stage {
             words,
             listed: None,
             slots: mesh.slots(),
+            hull: hull.edges(),
+            hull_count: hull.count(),
+            hull_limit: hull.limit(),
             limit: mesh.capacity().min(deferred.len()) as u32,
             entry: 0,
         };

@@ -2,7 +2,6 @@
 
 use super::shift::Input;
 use crate::DualizeError;
-use polder_flip::FlipReport;
 use polder_flip::gpu::Mesh;
 use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunReport, View};
 
@@ -146,8 +145,6 @@ pub struct Counts {
     pub taken: u64,
     /// Rounds of pinning, of unpinning, of taking out.
     pub rounds: [u64; 3],
-    /// What the tally of the flips holds.
-    pub hull: FlipReport,
 }
 
 /// Where the counts will be found in the report of a run.
@@ -175,7 +172,6 @@ impl Read {
             taken: count(Word::Taken),
             // The device counts the rounds that pinned some.
             rounds: [count(Word::PinRounds) + 1, count(Word::UnpinRounds), count(Word::OutRounds)],
-            hull: FlipReport::default(),
         })
     }
 }

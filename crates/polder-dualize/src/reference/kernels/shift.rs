@@ -7,7 +7,7 @@
 use super::super::star::star;
 use glam::DVec2;
 use polder_flip::priority;
-use polder_mesh::{DELETED, GhostMesh, prev};
+use polder_mesh::{DELETED, GHOST, GhostMesh, prev};
 use polder_predicates::{Sign, orient2d};
 
 /// The bit of pinned sites.
@@ -66,6 +66,11 @@ pub fn pin_triangles(
     found.sort_unstable_by_key(|&h| (mesh.origin(h), h));
     found.dedup_by_key(|h| mesh.origin(*h));
     found
+}
+
+/// The half-edges that lead to the ghost, ascending: what [`pin_triangles`] lists besides.
+pub fn hull_edges(mesh: &GhostMesh) -> Vec<u32> {
+    (0..3 * mesh.slots() as u32).filter(|&h| mesh.destination(h) == GHOST).collect()
 }
 
 /// Puts the origins of `fresh` on their centers, and gives half-edges out of those not pinned yet around which a triangle
