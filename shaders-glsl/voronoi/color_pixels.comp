@@ -1,27 +1,25 @@
-// Coloring, 6 of 6: each pixel looks up who wins it: the band among its row's stacks, then the entry.
+// Coloring, 7 of 8: the pixels of each tile that is left look up who wins them: the band among their row's stacks, then the
+// entry.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "row.glsl"
+#include "columns.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 grid;
+    ReadU32 bits;
+    ReadU32 ranks;
     ReadU32 nearest;
     ReadU32 entries;
     ReadU32 live;
     ReadU32 starts;
+    ReadU32 left;
+    ReadU32 left_count;
     WriteU32 colors;
     uint width;
     uint height;
     uint band; // columns
 };
 
-void main() {
-    uint index = item_index();
-    if (index >= width * height) {
-        return;
-    }
-    uint y = index / width;
-    uint x = index % width;
+uint color_of(uint x, uint y) {
     uint bands = (width + band - 1u) / band;
     // The last band that starts at or before the pixel; the first stack that is not empty starts at 0.
     uint low = 0u;
@@ -43,5 +41,20 @@ void main() {
         high = at_or_before ? high : middle;
     }
     uint column = entries.at[start + low] & 0xffffu;
-    colors.at[index] = grid.at[nearest.at[y * width + column] * width + column];
+    return number_of(bits, ranks, nearest_row(nearest, column, y, width) << 16 | column, pitch_of(width));
+}
+
+void main() {
+    if (group_index() >= left_count.at[0]) {
+        return;
+    }
+    uint tile = left.at[group_index()];
+    uint across = tiles_across(width);
+    for (uint i = gl_LocalInvocationIndex; i < TILE_WIDTH * TILE_HEIGHT; i += WORKGROUP) {
+        uint x = tile % across * TILE_WIDTH + i % TILE_WIDTH;
+        uint y = tile / across * TILE_HEIGHT + i / TILE_WIDTH;
+        if (x < width && y < height) {
+            colors.at[y * width + x] = color_of(x, y);
+        }
+    }
 }

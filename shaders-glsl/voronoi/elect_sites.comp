@@ -1,13 +1,14 @@
-// Mapping, 2 of 5: a one at each owned pixel (where zeros stood), and a flag for each point that does not own its pixel.
+// Mapping, 3 of 7: the lowest index keeps a pixel, in the order of pixels that have points; a bit for each point that loses.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "grid.glsl"
+#include "ranks.glsl"
 
 layout(push_constant, std430) uniform Args {
     ReadU32 pixels;
-    ReadU32 owner;
-    WriteU32 owned;
-    WriteU32 lost;
+    ReadU32 bits;
+    ReadU32 ranks;
+    U32 order; // NONE
+    U32 lost;  // zeros, a bit a point
     uint width;
     uint count;
 };
@@ -17,10 +18,14 @@ void main() {
     if (point >= count) {
         return;
     }
-    uint index = index_of(pixels.at[point], width);
-    bool wins = owner.at[index] == point;
-    lost.at[point] = wins ? 0u : 1u;
-    if (wins) {
-        owned.at[index] = 1u;
+    uint number = number_of(bits, ranks, pixels.at[point], pitch_of(width));
+    uint loser = point;
+    // Whoever stands there can only give way to a lower index.
+    if (order.at[number] > point) {
+        uint before = atomicMin(order.at[number], point);
+        loser = before == NONE ? NONE : max(before, point);
+    }
+    if (loser != NONE) {
+        atomicOr(lost.at[loser >> 5], 1u << (loser & 31u));
     }
 }

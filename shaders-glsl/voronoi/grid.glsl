@@ -20,6 +20,20 @@ uint index_of(uint pixel, uint width) {
     return (pixel >> 16) * width + (pixel & 0xffffu);
 }
 
+// Words in a row of a grid of bits, 32 pixels a word.
+uint pitch_of(uint width) {
+    return (width + 31u) / 32u;
+}
+
+uint word_of(uint pixel, uint pitch) {
+    return (pixel >> 16) * pitch + ((pixel & 0xffffu) >> 5);
+}
+
+// The bits before a place in its word.
+uint below(uint place) {
+    return (1u << (place & 31u)) - 1u;
+}
+
 uint pixel_at(uint index, uint width) {
     return (index / width) << 16 | index % width;
 }

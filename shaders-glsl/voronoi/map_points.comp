@@ -1,4 +1,5 @@
-// Mapping, 1 of 5: the pixel of each point, in integers alone from the bits of its coordinates; the lowest index keeps it.
+// Mapping, 1 of 7: the pixel of each point, in integers alone from the bits of its coordinates, and a bit for each pixel that
+// has a point.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"
@@ -6,7 +7,7 @@
 layout(push_constant, std430) uniform Args {
     ReadU64 points;
     WriteU32 pixels;
-    U32 owner;
+    U32 bits; // zeros
     int64_t translation_x;
     int64_t translation_y;
     int exponent;
@@ -54,5 +55,10 @@ void main() {
     uint x = column_or_row(points.at[2u * point], translation_x, width);
     uint y = column_or_row(points.at[2u * point + 1u], translation_y, height);
     pixels.at[point] = y << 16 | x;
-    atomicMin(owner.at[y * width + x], point);
+    uint word = y * pitch_of(width) + (x >> 5);
+    uint bit = 1u << (x & 31u);
+    // Where many points share a pixel most of them need not queue up.
+    if ((bits.at[word] & bit) == 0u) {
+        atomicOr(bits.at[word], bit);
+    }
 }

@@ -1,29 +1,34 @@
-// Debris, 1 of 3: marks every pixel that has no closer neighbor of its own color, and appends it to the debris. The order
-// of what is appended is that of arrival, and no result depends on it.
+// Coloring, 8 of 8: marks every pixel of the tiles that were left that has no closer neighbor of its own color, as
+// debris.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "tiles.glsl"
 #include "closer.glsl"
 
 layout(push_constant, std430) uniform Args {
     ReadU32 colors;
     ReadU32 sites;
-    WriteU32 state;
-    WriteU32 debris;
-    U32 total;
-    U32 marked;
+    ReadU32 left;
+    ReadU32 left_count;
+    U32 debris_bits;
+    WriteU32 any_debris;
     uint width;
     uint height;
 };
 
 void main() {
-    uint index = item_index();
-    if (index >= width * height) {
+    if (group_index() >= left_count.at[0]) {
         return;
     }
-    bool keeps = has_closer(colors, sites, index, width, height);
-    state.at[index] = keeps ? 0u : 1u;
-    if (!keeps) {
-        debris.at[atomicAdd(total.at[0], 1u)] = index;
-        atomicAdd(marked.at[0], 1u);
+    uint tile = left.at[group_index()];
+    uint across = tiles_across(width);
+    for (uint i = gl_LocalInvocationIndex; i < TILE_WIDTH * TILE_HEIGHT; i += WORKGROUP) {
+        uint x = tile % across * TILE_WIDTH + i % TILE_WIDTH;
+        uint y = tile / across * TILE_HEIGHT + i / TILE_WIDTH;
+        uint index = y * width + x;
+        if (x < width && y < height && !has_closer(colors, sites, index, width, height)) {
+            any_debris.at[0] = 1u;
+            atomicOr(debris_bits.at[index >> 5], 1u << (index & 31u));
+        }
     }
 }

@@ -1,4 +1,4 @@
-// Mapping, 5 of 5: puts the missing points, sorted, behind the sites.
+// Mapping, 7 of 7: puts the missing points, sorted, behind the sites.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "grid.glsl"

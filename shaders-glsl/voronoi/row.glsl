@@ -3,7 +3,7 @@
 #ifndef ROW_GLSL
 #define ROW_GLSL
 
-#include "grid.glsl"
+#include "columns.glsl"
 
 // The first pixel, at least 0, that is strictly nearer to the right one of two sites: ties go to the left. Sites are
 // (column, row) relative to the row asked for; all sums stay below 2^31.

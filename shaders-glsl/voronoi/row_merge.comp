@@ -1,4 +1,4 @@
-// Coloring, 5 of 6: merges the stacks of each row from left to right, in place: entries at the end of the left ones and at
+// Coloring, 6 of 8: merges the stacks of each row from left to right, in place: entries at the end of the left ones and at
 // the beginning of each next one win nothing any more. `starts` gets the first pixel of each band's stack; an empty one has
 // that of the next.
 #version 460
@@ -7,6 +7,7 @@
 
 layout(push_constant, std430) uniform Args {
     ReadU32 nearest;
+    ReadU32 wanted;
     U32 entries;
     U32 live;
     WriteU32 starts;
@@ -17,12 +18,12 @@ layout(push_constant, std430) uniform Args {
 
 ivec2 site_of(uint entry, uint y) {
     uint column = entry & 0xffffu;
-    return ivec2(column, int(nearest.at[y * width + column]) - int(y));
+    return ivec2(column, int(nearest_row(nearest, column, y, width)) - int(y));
 }
 
 void main() {
     uint y = item_index();
-    if (y >= height) {
+    if (y >= height || !wanted_rows(wanted, y, y + 1u)) {
         return;
     }
     uint bands = (width + band - 1u) / band;

@@ -1,58 +1,93 @@
-// Coloring, 4 of 6: for each row of each band of columns the stack of its proximate sites, those that are nearest to some
-// pixel of the whole row. `live` holds for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16
-// bits.
+// Coloring, 5 of 8: for each row of each band of columns the stack of its proximate sites, those that are nearest to some
+// pixel of the whole row. A workgroup takes WORKGROUP rows of a band through shared memory, an invocation each. `live` holds
+// for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "row.glsl"
 
+layout(constant_id = 1) const uint BAND = 64u; // columns
+
 layout(push_constant, std430) uniform Args {
     ReadU32 nearest;
-    U32 entries;
+    ReadU32 wanted;
+    WriteU32 entries;
     WriteU32 live;
     uint width;
     uint height;
-    uint band; // columns, at most 255
 };
 
+// Two columns in a word; an odd number of words in a row, so that all rows' words of a column lie in different banks.
+const uint PAIRS = (BAND / 2u + 1u) | 1u;
+shared uint rows_of[WORKGROUP * PAIRS];
+shared uint stacks[WORKGROUP * (BAND + 1u)];
+shared uint counts[WORKGROUP];
+
+uint row_at(uint lane, uint k) {
+    return rows_of[lane * PAIRS + k / 2u] >> 16u * (k & 1u) & 0xffffu;
+}
+
 void main() {
-    uint item = item_index();
-    uint bands = (width + band - 1u) / band;
-    uint y = item / bands;
-    uint from = item % bands * band;
-    if (y >= height) {
+    uint bands = (width + BAND - 1u) / BAND;
+    uint band = group_index() % bands;
+    uint from = band * BAND;
+    uint y0 = group_index() / bands * WORKGROUP;
+    if (y0 >= height || !wanted_rows(wanted, y0, min(y0 + WORKGROUP, height))) {
         return;
     }
-    uint start = y * width + from;
+    uint lane = gl_LocalInvocationIndex;
+    uint columns = min(BAND, width - from);
+    uint first_pair = from / 2u;
+    uint last_pair = (from + columns - 1u) / 2u;
+    uint rows = min(WORKGROUP, height - y0);
+    for (uint i = lane; i < WORKGROUP * PAIRS; i += WORKGROUP) {
+        uint y = min(y0 + i / PAIRS, height - 1u);
+        rows_of[i] = nearest.at[y * pairs_of(width) + min(first_pair + i % PAIRS, last_pair)];
+    }
+    barrier();
     uint count = 0u;
-    ivec2 top = ivec2(0);
-    uint top_from = 0u;
-    for (uint x = from; x < min(from + band, width); x++) {
-        uint row = nearest.at[y * width + x];
-        if (row == NONE) {
-            continue;
-        }
-        ivec2 site = ivec2(x, int(row) - int(y));
-        uint wins_from = 0u;
-        while (count > 0u) {
-            wins_from = takes_over(top, site);
-            if (wins_from > top_from) {
-                break;
+    uint y = y0 + lane;
+    if (y < height) {
+        uint stack = lane * (BAND + 1u);
+        uint odd = from & 1u;
+        ivec2 top = ivec2(0);
+        uint top_from = 0u;
+        for (uint k = 0u; k < columns; k++) {
+            uint row = row_at(lane, k + odd);
+            if (row == NO_ROW) {
+                continue;
             }
-            wins_from = 0u;
-            count--;
-            if (count > 0u) {
-                uint entry = entries.at[start + count - 1u];
-                uint column = entry & 0xffffu;
-                top = ivec2(column, int(nearest.at[y * width + column]) - int(y));
-                top_from = entry >> 16;
+            ivec2 site = ivec2(from + k, int(row) - int(y));
+            uint wins_from = 0u;
+            while (count > 0u) {
+                wins_from = takes_over(top, site);
+                if (wins_from > top_from) {
+                    break;
+                }
+                wins_from = 0u;
+                count--;
+                if (count > 0u) {
+                    uint entry = stacks[stack + count - 1u];
+                    uint column = entry & 0xffffu;
+                    top = ivec2(column, int(row_at(lane, column - from + odd)) - int(y));
+                    top_from = entry >> 16;
+                }
+            }
+            if (wins_from < width) {
+                stacks[stack + count] = wins_from << 16 | (from + k);
+                count++;
+                top = site;
+                top_from = wins_from;
             }
         }
-        if (wins_from < width) {
-            entries.at[start + count] = wins_from << 16 | x;
-            count++;
-            top = site;
-            top_from = wins_from;
+        live.at[y * bands + band] = count << 8;
+    }
+    counts[lane] = count;
+    barrier();
+    for (uint i = lane; i < rows * BAND; i += WORKGROUP) {
+        uint row = i / BAND;
+        uint k = i % BAND;
+        if (k < counts[row]) {
+            entries.at[(y0 + row) * width + from + k] = stacks[row * (BAND + 1u) + k];
         }
     }
-    live.at[item] = count << 8;
 }

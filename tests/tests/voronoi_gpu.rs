@@ -9,8 +9,15 @@ use polder_tests::families;
 use polder_voronoi::gpu::Stage;
 use polder_voronoi::{DVec2, GridMapping, Key, Options, Resolution, Sites, reference};
 use polder_vulkan::Error;
-use voronoi_gpu_support::{Shared, anywhere, elected, grids, with_device};
+use voronoi_gpu_support::{Shared, anywhere, elected, grids, ranked, rings, with_device};
 use vulkan_support::Gpu;
+
+/// A list as the device has it: a bit for each.
+fn bits_of(list: &[u32], pixels: usize) -> Vec<u32> {
+    let mut bits = vec![0; pixels.div_ceil(32)];
+    list.iter().for_each(|&index| bits[index as usize / 32] |= 1 << (index % 32));
+    bits
+}
 
 /// All steps after mapping, each against the reference.
 fn assert_colors(shared: &mut Shared, stage: usize, name: &str, sites: &Sites) {
@@ -22,22 +29,15 @@ fn assert_colors(shared: &mut Shared, stage: usize, name: &str, sites: &Sites) {
     assert!(gpu.fetch(buffers.colors()) == expected.colors, "{name}: coloring");
 
     let mut recording = gpu.recording();
-    stage.record_debris(&mut recording, buffers).unwrap();
+    stage.record_repair(&mut recording, buffers).unwrap();
     let read = buffers.read_counts(&mut recording);
     let counts = read.counts(&gpu.run(&recording));
     let rounds = reference::debris(&mut expected, sites).unwrap();
-    assert!(gpu.fetch(buffers.colors()) == expected.colors, "{name}: without debris");
-    let count = expected.debris.len();
-    assert_eq!((counts.debris, counts.debris_rounds), (count as u64, rounds), "{name}");
-    assert!(gpu.fetch(buffers.debris())[..count] == expected.debris, "{name}: debris");
-
-    let mut recording = gpu.recording();
-    stage.record_recolor(&mut recording, buffers).unwrap();
-    let read = buffers.read_counts(&mut recording);
-    let counts = read.counts(&gpu.run(&recording));
-    let rounds = reference::recolor(&mut expected, sites).unwrap();
-    assert!(gpu.fetch(buffers.colors()) == expected.colors, "{name}: recolored");
-    assert_eq!(counts.recolor_rounds, rounds, "{name}");
+    reference::recolor(&mut expected, sites).unwrap();
+    assert!(gpu.fetch(buffers.colors()) == expected.colors, "{name}: repaired");
+    assert_eq!((counts.debris, counts.debris_rounds), (expected.debris.len() as u64, rounds), "{name}");
+    let bits = bits_of(&expected.debris, expected.colors.len());
+    assert!(gpu.fetch(buffers.debris_bits().unwrap()) == bits, "{name}: debris");
 }
 
 /// The whole stage in one recording.
@@ -53,8 +53,8 @@ fn assert_stage(gpu: &mut Gpu, stage: &Stage, name: &str, points: &[DVec2], opti
     assert!(gpu.fetch(buffers.order()) == expected.sites.order, "{name}: order");
     assert!(gpu.fetch(buffers.pixels()) == expected.sites.pixels, "{name}: pixels");
     assert!(gpu.fetch(buffers.colors()) == expected.diagram.colors, "{name}: colors");
-    let debris = expected.diagram.debris;
-    assert!(gpu.fetch(buffers.debris())[..debris.len()] == debris, "{name}: debris");
+    let bits = bits_of(&expected.diagram.debris, expected.diagram.colors.len());
+    assert!(gpu.fetch(buffers.debris_bits().unwrap()) == bits, "{name}: debris");
 }
 
 #[test]
@@ -62,7 +62,7 @@ fn every_family_step_by_step() {
     with_device(|shared| {
         for (name, pslg) in families(1000, 21) {
             let output = reference::diagram(pslg.points(), &Options::default()).unwrap();
-            for stage in [0, 1] {
+            for stage in [0, 1, 2] {
                 assert_colors(shared, stage, name, &output.sites);
             }
         }
@@ -95,7 +95,7 @@ fn strips_lines_empty_rows_dense_and_sparse_grids() {
     with_device(|shared| {
         for (turn, (name, sites)) in grids().into_iter().enumerate() {
             // Most grids are smaller than the long bands.
-            let stages: &[usize] = if turn % 5 == 0 { &[0, 1] } else { &[1] };
+            let stages: &[usize] = if turn % 5 == 0 || sites.size[0] > 100 { &[0, 1, 2] } else { &[1] };
             for &stage in stages {
                 assert_colors(shared, stage, &name, &sites);
             }
@@ -122,7 +122,7 @@ fn small_grids_are_colored_as_by_comparing_all() {
         for seed in 0..24 {
             let size = [1 + seed as u32 * 5 % 47, 1 + seed as u32 * 11 % 43];
             let sites = anywhere(size, 1 + seed as usize * 3, 900 + seed);
-            for stage in [0, 1] {
+            for stage in [0, 1, 2] {
                 let (gpu, stage, buffers) = shared.holding(stage, &sites);
                 let mut recording = gpu.recording();
                 stage.record_color(&mut recording, buffers).unwrap();
@@ -161,6 +161,28 @@ fn repaired_grids_are_flooded_as_defined() {
 }
 
 #[test]
+fn debris_is_found_and_recolored_where_sites_are_near() {
+    with_device(|shared| {
+        for (radius, stage) in [(16.0, 0), (16.0, 1), (22.0, 0), (22.0, 2)] {
+            let sites = rings([300, 280], radius);
+            let debris = {
+                let mut diagram = reference::color(&sites).unwrap();
+                reference::debris(&mut diagram, &sites).unwrap();
+                diagram.debris.len()
+            };
+            assert!(debris > 10, "{debris}");
+            assert_colors(shared, stage, "rings", &sites);
+        }
+        // Most of it without bands, in the first stage.
+        let (gpu, stage, buffers) = shared.holding(0, &rings([300, 280], 16.0));
+        let mut recording = gpu.recording();
+        stage.record_color(&mut recording, buffers).unwrap();
+        let read = buffers.read_counts(&mut recording);
+        assert!(read.tiles_left(&gpu.run(&recording)) < 10);
+    });
+}
+
+#[test]
 fn a_recording_serves_again() {
     with_device(|Shared { gpu, stages, .. }| {
         let size = [90, 70];
@@ -171,7 +193,9 @@ fn a_recording_serves_again() {
         for seed in 1..4 {
             let sites = anywhere(size, 400, seed);
             gpu.engine.upload(buffers.pixels(), &sites.pixels).unwrap();
-            gpu.engine.upload(buffers.site_count().unwrap(), &[sites.count as u32]).unwrap();
+            let (bits, ranks) = ranked(&sites);
+            gpu.engine.upload(buffers.site_bits(), &bits).unwrap();
+            gpu.engine.upload(buffers.site_ranks(), &ranks).unwrap();
             gpu.run(&recording);
             let mut expected = reference::color(&sites).unwrap();
             reference::debris(&mut expected, &sites).unwrap();

@@ -87,6 +87,4 @@ pub struct Counts {
     pub debris: u64,
     /// Rounds in which debris was found, the last one finding none.
     pub debris_rounds: u64,
-    /// Rounds in which debris was recolored.
-    pub recolor_rounds: u64,
 }

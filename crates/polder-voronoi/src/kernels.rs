@@ -2,56 +2,6 @@
 
 use polder_vulkan::{Access, BufferArgument, Code, Constant, Encoder, Shader, Side, View, include_spirv};
 
-/// Between the kernels of a round: workgroups for as many items as a counter says, zero for the counter that is filled next
-/// (which may be the same), and the number of rounds that had something to do.
-#[derive(Debug, Clone, Copy)]
-pub enum AdvanceRound {}
-
-/// Arguments of [`AdvanceRound`].
-#[derive(Debug, Clone, Copy)]
-pub struct AdvanceRoundArgs<'a> {
-    /// read
-    pub counter: View<'a, u32>,
-    /// written
-    pub groups: View<'a, u32>,
-    /// written
-    pub zeroed: View<'a, u32>,
-    /// read and written, may be left out
-    pub rounds: Option<View<'a, u32>>,
-    /// a value
-    pub items: u32,
-}
-
-impl Shader for AdvanceRound {
-    type Args<'a> = AdvanceRoundArgs<'a>;
-
-    const CODE: Code = Code {
-        name: "advance_round",
-        words: include_spirv!("../spv/advance_round.spv"),
-        without_float64: None,
-        argument_bytes: 36,
-        buffers: &[
-            BufferArgument { name: "counter", offset: 0, access: Access::Read },
-            BufferArgument { name: "groups", offset: 8, access: Access::Write },
-            BufferArgument { name: "zeroed", offset: 16, access: Access::Write },
-            BufferArgument { name: "rounds", offset: 24, access: Access::ReadWrite },
-        ],
-        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
-        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
-        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "37df55564f04146baa15b5ac5dd02d55efaed2559501eb813ec4b631c259cd98",
-        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
-    };
-
-    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.counter);
-        encoder.buffer(8, args.groups);
-        encoder.buffer(16, args.zeroed);
-        encoder.optional(24, args.rounds);
-        encoder.value(32, args.items);
-    }
-}
-
 /// Bounds of points, 2 of 2: one workgroup joins what the others found.
 #[derive(Debug, Clone, Copy)]
 pub enum BoundPartials {}
@@ -82,7 +32,7 @@ impl Shader for BoundPartials {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "97f04b92e77f4aa474b2064e9431157507dee85d51b06e6d52fe52b3bea3a7c4",
+        source_hash: "8b0f653149df66556cedc970d57d97c6d26737fa97ef7ce4d35b358a10cb44ae",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -123,7 +73,7 @@ impl Shader for BoundPoints {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "e64a41162e5a3f16f6f28b3bcfc9388dffc4085b6644d5bde0ae56da70623b5a",
+        source_hash: "ab85c87db05cf45ef3df819738e33ec547874b528e4ac67d2cb73bb0c501566e",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -134,75 +84,8 @@ impl Shader for BoundPoints {
     }
 }
 
-/// Debris, 3 of 3: marks those candidates that have lost their last closer neighbor of their own color.
-#[derive(Debug, Clone, Copy)]
-pub enum CheckDebris {}
-
-/// Arguments of [`CheckDebris`].
-#[derive(Debug, Clone, Copy)]
-pub struct CheckDebrisArgs<'a> {
-    /// read
-    pub colors: View<'a, u32>,
-    /// read
-    pub sites: View<'a, u32>,
-    /// written
-    pub state: View<'a, u32>,
-    /// written
-    pub debris: View<'a, u32>,
-    /// read and written
-    pub total: View<'a, u32>,
-    /// read and written
-    pub marked: View<'a, u32>,
-    /// read
-    pub candidates: View<'a, u32>,
-    /// read
-    pub count: View<'a, u32>,
-    /// a value
-    pub width: u32,
-    /// a value
-    pub height: u32,
-}
-
-impl Shader for CheckDebris {
-    type Args<'a> = CheckDebrisArgs<'a>;
-
-    const CODE: Code = Code {
-        name: "check_debris",
-        words: include_spirv!("../spv/check_debris.spv"),
-        without_float64: None,
-        argument_bytes: 72,
-        buffers: &[
-            BufferArgument { name: "colors", offset: 0, access: Access::Read },
-            BufferArgument { name: "sites", offset: 8, access: Access::Read },
-            BufferArgument { name: "state", offset: 16, access: Access::Write },
-            BufferArgument { name: "debris", offset: 24, access: Access::Write },
-            BufferArgument { name: "total", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "marked", offset: 40, access: Access::ReadWrite },
-            BufferArgument { name: "candidates", offset: 48, access: Access::Read },
-            BufferArgument { name: "count", offset: 56, access: Access::Read },
-        ],
-        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
-        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
-        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "3c2ef1a2a81e1833359cfccfe9c441984ab641ba25cbc6865cfdfe4fe81fac24",
-        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
-    };
-
-    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.colors);
-        encoder.buffer(8, args.sites);
-        encoder.buffer(16, args.state);
-        encoder.buffer(24, args.debris);
-        encoder.buffer(32, args.total);
-        encoder.buffer(40, args.marked);
-        encoder.buffer(48, args.candidates);
-        encoder.buffer(56, args.count);
-        encoder.value(64, args.width);
-        encoder.value(68, args.height);
-    }
-}
-
-/// Coloring, 6 of 6: each pixel looks up who wins it: the band among its row's stacks, then the entry.
+/// Coloring, 7 of 8: the pixels of each tile that is left look up who wins them: the band among their row's stacks, then the
+/// entry.
 #[derive(Debug, Clone, Copy)]
 pub enum ColorPixels {}
 
@@ -210,7 +93,9 @@ pub enum ColorPixels {}
 #[derive(Debug, Clone, Copy)]
 pub struct ColorPixelsArgs<'a> {
     /// read
-    pub grid: View<'a, u32>,
+    pub bits: View<'a, u32>,
+    /// read
+    pub ranks: View<'a, u32>,
     /// read
     pub nearest: View<'a, u32>,
     /// read
@@ -219,6 +104,10 @@ pub struct ColorPixelsArgs<'a> {
     pub live: View<'a, u32>,
     /// read
     pub starts: View<'a, u32>,
+    /// read
+    pub left: View<'a, u32>,
+    /// read
+    pub left_count: View<'a, u32>,
     /// written
     pub colors: View<'a, u32>,
     /// a value
@@ -236,36 +125,122 @@ impl Shader for ColorPixels {
         name: "color_pixels",
         words: include_spirv!("../spv/color_pixels.spv"),
         without_float64: None,
-        argument_bytes: 60,
+        argument_bytes: 84,
         buffers: &[
-            BufferArgument { name: "grid", offset: 0, access: Access::Read },
-            BufferArgument { name: "nearest", offset: 8, access: Access::Read },
-            BufferArgument { name: "entries", offset: 16, access: Access::Read },
-            BufferArgument { name: "live", offset: 24, access: Access::Read },
-            BufferArgument { name: "starts", offset: 32, access: Access::Read },
-            BufferArgument { name: "colors", offset: 40, access: Access::Write },
+            BufferArgument { name: "bits", offset: 0, access: Access::Read },
+            BufferArgument { name: "ranks", offset: 8, access: Access::Read },
+            BufferArgument { name: "nearest", offset: 16, access: Access::Read },
+            BufferArgument { name: "entries", offset: 24, access: Access::Read },
+            BufferArgument { name: "live", offset: 32, access: Access::Read },
+            BufferArgument { name: "starts", offset: 40, access: Access::Read },
+            BufferArgument { name: "left", offset: 48, access: Access::Read },
+            BufferArgument { name: "left_count", offset: 56, access: Access::Read },
+            BufferArgument { name: "colors", offset: 64, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "3acfe6d4a5de25bff0eba9255987c2361a0614af2dfcd69358d187c07f06753b",
+        source_hash: "40b9c7786f3a79cbcc86d2cbef083bb43a822edddd194b50703acd806b91a311",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.grid);
-        encoder.buffer(8, args.nearest);
-        encoder.buffer(16, args.entries);
-        encoder.buffer(24, args.live);
-        encoder.buffer(32, args.starts);
-        encoder.buffer(40, args.colors);
-        encoder.value(48, args.width);
-        encoder.value(52, args.height);
-        encoder.value(56, args.band);
+        encoder.buffer(0, args.bits);
+        encoder.buffer(8, args.ranks);
+        encoder.buffer(16, args.nearest);
+        encoder.buffer(24, args.entries);
+        encoder.buffer(32, args.live);
+        encoder.buffer(40, args.starts);
+        encoder.buffer(48, args.left);
+        encoder.buffer(56, args.left_count);
+        encoder.buffer(64, args.colors);
+        encoder.value(72, args.width);
+        encoder.value(76, args.height);
+        encoder.value(80, args.band);
     }
 }
 
-/// Coloring, 2 of 6: the first and the last row with a site, in each column of each band of rows; a half word each.
+/// Coloring, 1 of 8: a tile of pixels for each workgroup, each pixel by a search around it that is exact. A tile with a pixel,
+/// in it or next to it, that has no site nearer than RADIUS + 1 is left to the bands, and listed. All pixels without a closer
+/// neighbor of their color are marked as debris.
+///
+/// 1. The bits of the sites in the tile and around it go to shared memory.
+/// 2. Each pixel of these rows finds the nearest site in its row, from 31 to the left to 31 to the right.
+/// 3. Each pixel of the tile, and those next to it, take the best of the rows around, as far as the best one so far is away.
+/// 4. The color is the number of bits before the site's. A pixel whose neighbor toward the site has the same site is no debris.
+///
+/// Sites stand relative to pixels: (x + 32) << 6 | (y + 32), so that among sites equally far the lower word wins.
+#[derive(Debug, Clone, Copy)]
+pub enum ColorTiles {}
+
+/// Arguments of [`ColorTiles`].
+#[derive(Debug, Clone, Copy)]
+pub struct ColorTilesArgs<'a> {
+    /// read
+    pub bits: View<'a, u32>,
+    /// read
+    pub ranks: View<'a, u32>,
+    /// written
+    pub colors: View<'a, u32>,
+    /// read and written
+    pub debris_bits: View<'a, u32>,
+    /// written
+    pub any_debris: View<'a, u32>,
+    /// written
+    pub left: View<'a, u32>,
+    /// read and written
+    pub left_count: View<'a, u32>,
+    /// written
+    pub wanted: View<'a, u32>,
+    /// a value
+    pub width: u32,
+    /// a value
+    pub height: u32,
+}
+
+impl Shader for ColorTiles {
+    type Args<'a> = ColorTilesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "color_tiles",
+        words: include_spirv!("../spv/color_tiles.spv"),
+        without_float64: None,
+        argument_bytes: 72,
+        buffers: &[
+            BufferArgument { name: "bits", offset: 0, access: Access::Read },
+            BufferArgument { name: "ranks", offset: 8, access: Access::Read },
+            BufferArgument { name: "colors", offset: 16, access: Access::Write },
+            BufferArgument { name: "debris_bits", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "any_debris", offset: 32, access: Access::Write },
+            BufferArgument { name: "left", offset: 40, access: Access::Write },
+            BufferArgument { name: "left_count", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "wanted", offset: 56, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "RADIUS", id: 1, default: 16 },
+        ],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "9e55c93134b04e644cdae1b8fad6cf6de87c5d24be08c4b8cdf6e1f5bd231665",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.bits);
+        encoder.buffer(8, args.ranks);
+        encoder.buffer(16, args.colors);
+        encoder.buffer(24, args.debris_bits);
+        encoder.buffer(32, args.any_debris);
+        encoder.buffer(40, args.left);
+        encoder.buffer(48, args.left_count);
+        encoder.buffer(56, args.wanted);
+        encoder.value(64, args.width);
+        encoder.value(68, args.height);
+    }
+}
+
+/// Coloring, 3 of 8: the first and the last row with a site, in each column of each band of rows; a half word each.
 #[derive(Debug, Clone, Copy)]
 pub enum ColumnEnds {}
 
@@ -273,7 +248,7 @@ pub enum ColumnEnds {}
 #[derive(Debug, Clone, Copy)]
 pub struct ColumnEndsArgs<'a> {
     /// read
-    pub grid: View<'a, u32>,
+    pub bits: View<'a, u32>,
     /// written
     pub ends: View<'a, u32>,
     /// a value
@@ -293,18 +268,18 @@ impl Shader for ColumnEnds {
         without_float64: None,
         argument_bytes: 28,
         buffers: &[
-            BufferArgument { name: "grid", offset: 0, access: Access::Read },
+            BufferArgument { name: "bits", offset: 0, access: Access::Read },
             BufferArgument { name: "ends", offset: 8, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "5da7d88ad1b59f4e23781d3904001d872ca15f234663960910715db059cdc962",
+        source_hash: "53c2071ace9c16ff7dc7a1d9f91cffb1f72a5726d0531e29a39738c9cf744c5a",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.grid);
+        encoder.buffer(0, args.bits);
         encoder.buffer(8, args.ends);
         encoder.value(16, args.width);
         encoder.value(20, args.height);
@@ -312,8 +287,8 @@ impl Shader for ColumnEnds {
     }
 }
 
-/// Coloring, 3 of 6: for each pixel the row of the nearest site in its column, the lower one of two; one invocation for
-/// each column of each band of rows.
+/// Coloring, 4 of 8: for each pixel the row of the nearest site in its column, the lower one of two; one invocation for two
+/// columns of each band of rows, if a tile is left in them.
 #[derive(Debug, Clone, Copy)]
 pub enum ColumnFill {}
 
@@ -321,9 +296,11 @@ pub enum ColumnFill {}
 #[derive(Debug, Clone, Copy)]
 pub struct ColumnFillArgs<'a> {
     /// read
-    pub grid: View<'a, u32>,
+    pub bits: View<'a, u32>,
     /// read
     pub ends: View<'a, u32>,
+    /// read
+    pub wanted: View<'a, u32>,
     /// read and written
     pub nearest: View<'a, u32>,
     /// a value
@@ -341,95 +318,73 @@ impl Shader for ColumnFill {
         name: "column_fill",
         words: include_spirv!("../spv/column_fill.spv"),
         without_float64: None,
-        argument_bytes: 36,
+        argument_bytes: 44,
         buffers: &[
-            BufferArgument { name: "grid", offset: 0, access: Access::Read },
+            BufferArgument { name: "bits", offset: 0, access: Access::Read },
             BufferArgument { name: "ends", offset: 8, access: Access::Read },
-            BufferArgument { name: "nearest", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "wanted", offset: 16, access: Access::Read },
+            BufferArgument { name: "nearest", offset: 24, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "7df96b6acbfb726a7a4bfd71cff4734b5c32b34f9cd5f5e3d1db08e1f0ff6584",
+        source_hash: "758974983f21467de952647df1b85555ba4d6a438797c43d54a343200e1fa958",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.grid);
+        encoder.buffer(0, args.bits);
         encoder.buffer(8, args.ends);
-        encoder.buffer(16, args.nearest);
-        encoder.value(24, args.width);
-        encoder.value(28, args.height);
-        encoder.value(32, args.band);
+        encoder.buffer(16, args.wanted);
+        encoder.buffer(24, args.nearest);
+        encoder.value(32, args.width);
+        encoder.value(36, args.height);
+        encoder.value(40, args.band);
     }
 }
 
-/// Debris, 2 of 3: takes the color from what the last round marked, the last of the debris; neighbors that had the same
-/// color become candidates, once each.
+/// Mapping, 2 of 7 and 5 of 7: how many bits each word has, to be summed up.
 #[derive(Debug, Clone, Copy)]
-pub enum DropDebris {}
+pub enum CountBits {}
 
-/// Arguments of [`DropDebris`].
+/// Arguments of [`CountBits`].
 #[derive(Debug, Clone, Copy)]
-pub struct DropDebrisArgs<'a> {
-    /// read and written
-    pub colors: View<'a, u32>,
-    /// read and written
-    pub state: View<'a, u32>,
+pub struct CountBitsArgs<'a> {
     /// read
-    pub debris: View<'a, u32>,
-    /// read
-    pub total: View<'a, u32>,
-    /// read
-    pub marked: View<'a, u32>,
+    pub words: View<'a, u32>,
     /// written
-    pub candidates: View<'a, u32>,
-    /// read and written
-    pub count: View<'a, u32>,
+    pub counts: View<'a, u32>,
     /// a value
-    pub width: u32,
-    /// a value
-    pub height: u32,
+    pub count: u32,
 }
 
-impl Shader for DropDebris {
-    type Args<'a> = DropDebrisArgs<'a>;
+impl Shader for CountBits {
+    type Args<'a> = CountBitsArgs<'a>;
 
     const CODE: Code = Code {
-        name: "drop_debris",
-        words: include_spirv!("../spv/drop_debris.spv"),
+        name: "count_bits",
+        words: include_spirv!("../spv/count_bits.spv"),
         without_float64: None,
-        argument_bytes: 64,
+        argument_bytes: 20,
         buffers: &[
-            BufferArgument { name: "colors", offset: 0, access: Access::ReadWrite },
-            BufferArgument { name: "state", offset: 8, access: Access::ReadWrite },
-            BufferArgument { name: "debris", offset: 16, access: Access::Read },
-            BufferArgument { name: "total", offset: 24, access: Access::Read },
-            BufferArgument { name: "marked", offset: 32, access: Access::Read },
-            BufferArgument { name: "candidates", offset: 40, access: Access::Write },
-            BufferArgument { name: "count", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 0, access: Access::Read },
+            BufferArgument { name: "counts", offset: 8, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "f88554a60deb0a9075f291cd8a16bce95ba90f88aa4e3c6a6dd50197509ad4ff",
+        source_hash: "e0422aa5d9188d17dbf3feac4010cf99265000ab717cf6a715e78771bb43d10d",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.colors);
-        encoder.buffer(8, args.state);
-        encoder.buffer(16, args.debris);
-        encoder.buffer(24, args.total);
-        encoder.buffer(32, args.marked);
-        encoder.buffer(40, args.candidates);
-        encoder.buffer(48, args.count);
-        encoder.value(56, args.width);
-        encoder.value(60, args.height);
+        encoder.buffer(0, args.words);
+        encoder.buffer(8, args.counts);
+        encoder.value(16, args.count);
     }
 }
 
-/// Mapping, 2 of 5: a one at each owned pixel (where zeros stood), and a flag for each point that does not own its pixel.
+/// Mapping, 3 of 7: the lowest index keeps a pixel, in the order of pixels that have points; a bit for each point that loses.
 #[derive(Debug, Clone, Copy)]
 pub enum ElectSites {}
 
@@ -439,10 +394,12 @@ pub struct ElectSitesArgs<'a> {
     /// read
     pub pixels: View<'a, u32>,
     /// read
-    pub owner: View<'a, u32>,
-    /// written
-    pub owned: View<'a, u32>,
-    /// written
+    pub bits: View<'a, u32>,
+    /// read
+    pub ranks: View<'a, u32>,
+    /// read and written
+    pub order: View<'a, u32>,
+    /// read and written
     pub lost: View<'a, u32>,
     /// a value
     pub width: u32,
@@ -457,88 +414,204 @@ impl Shader for ElectSites {
         name: "elect_sites",
         words: include_spirv!("../spv/elect_sites.spv"),
         without_float64: None,
-        argument_bytes: 40,
+        argument_bytes: 48,
         buffers: &[
             BufferArgument { name: "pixels", offset: 0, access: Access::Read },
-            BufferArgument { name: "owner", offset: 8, access: Access::Read },
-            BufferArgument { name: "owned", offset: 16, access: Access::Write },
-            BufferArgument { name: "lost", offset: 24, access: Access::Write },
+            BufferArgument { name: "bits", offset: 8, access: Access::Read },
+            BufferArgument { name: "ranks", offset: 16, access: Access::Read },
+            BufferArgument { name: "order", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "lost", offset: 32, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "1f5d91ee9926e519e141822aa88d0d8f0be4a10520e6cc88ae20383e213aff29",
+        source_hash: "7dde09d2c1422011bbea364ecef930e6254f8772fa66f3a8854614a2d116a508",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
         encoder.buffer(0, args.pixels);
-        encoder.buffer(8, args.owner);
-        encoder.buffer(16, args.owned);
-        encoder.buffer(24, args.lost);
-        encoder.value(32, args.width);
-        encoder.value(36, args.count);
+        encoder.buffer(8, args.bits);
+        encoder.buffer(16, args.ranks);
+        encoder.buffer(24, args.order);
+        encoder.buffer(32, args.lost);
+        encoder.value(40, args.width);
+        encoder.value(44, args.count);
     }
 }
 
-/// Recoloring, 1 of 2: the best color on offer to each debris pixel: of its neighbors that are closer to their site than it
-/// is, the one whose site comes first for the pixel.
+/// Repair, 1 of 4: lists the debris that was marked, in the order of arrival, and takes its color.
 #[derive(Debug, Clone, Copy)]
-pub enum FindColor {}
+pub enum ListDebris {}
 
-/// Arguments of [`FindColor`].
+/// Arguments of [`ListDebris`].
 #[derive(Debug, Clone, Copy)]
-pub struct FindColorArgs<'a> {
+pub struct ListDebrisArgs<'a> {
     /// read
-    pub colors: View<'a, u32>,
+    pub any_debris: View<'a, u32>,
     /// read
-    pub sites: View<'a, u32>,
-    /// read
-    pub debris: View<'a, u32>,
+    pub debris_bits: View<'a, u32>,
     /// written
-    pub found: View<'a, u32>,
-    /// read
+    pub colors: View<'a, u32>,
+    /// written
+    pub list: View<'a, u32>,
+    /// read and written
     pub count: View<'a, u32>,
+    /// read and written
+    pub first_count: View<'a, u32>,
+    /// a value
+    pub words: u32,
+}
+
+impl Shader for ListDebris {
+    type Args<'a> = ListDebrisArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "list_debris",
+        words: include_spirv!("../spv/list_debris.spv"),
+        without_float64: None,
+        argument_bytes: 52,
+        buffers: &[
+            BufferArgument { name: "any_debris", offset: 0, access: Access::Read },
+            BufferArgument { name: "debris_bits", offset: 8, access: Access::Read },
+            BufferArgument { name: "colors", offset: 16, access: Access::Write },
+            BufferArgument { name: "list", offset: 24, access: Access::Write },
+            BufferArgument { name: "count", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "first_count", offset: 40, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "c0aeb4ab1f050c6c9f8380820fdfdb4a97a141354bcf634327c7664f0eac0873",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.any_debris);
+        encoder.buffer(8, args.debris_bits);
+        encoder.buffer(16, args.colors);
+        encoder.buffer(24, args.list);
+        encoder.buffer(32, args.count);
+        encoder.buffer(40, args.first_count);
+        encoder.value(48, args.words);
+    }
+}
+
+/// Mapping, 6 of 7: the missing points in the order that they came in, and what they are to be sorted by: the number of the
+/// site in their pixel.
+#[derive(Debug, Clone, Copy)]
+pub enum ListMissing {}
+
+/// Arguments of [`ListMissing`].
+#[derive(Debug, Clone, Copy)]
+pub struct ListMissingArgs<'a> {
+    /// read
+    pub lost: View<'a, u32>,
+    /// read
+    pub lost_ranks: View<'a, u32>,
+    /// read
+    pub pixels: View<'a, u32>,
+    /// read
+    pub bits: View<'a, u32>,
+    /// read
+    pub ranks: View<'a, u32>,
+    /// written
+    pub missing: View<'a, u32>,
+    /// written
+    pub keys: View<'a, u32>,
+    /// a value
+    pub width: u32,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for ListMissing {
+    type Args<'a> = ListMissingArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "list_missing",
+        words: include_spirv!("../spv/list_missing.spv"),
+        without_float64: None,
+        argument_bytes: 64,
+        buffers: &[
+            BufferArgument { name: "lost", offset: 0, access: Access::Read },
+            BufferArgument { name: "lost_ranks", offset: 8, access: Access::Read },
+            BufferArgument { name: "pixels", offset: 16, access: Access::Read },
+            BufferArgument { name: "bits", offset: 24, access: Access::Read },
+            BufferArgument { name: "ranks", offset: 32, access: Access::Read },
+            BufferArgument { name: "missing", offset: 40, access: Access::Write },
+            BufferArgument { name: "keys", offset: 48, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "7e31699a07e8a464e3c0469f0b6580156450febc5684251f250dfcc257bc9728",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.lost);
+        encoder.buffer(8, args.lost_ranks);
+        encoder.buffer(16, args.pixels);
+        encoder.buffer(24, args.bits);
+        encoder.buffer(32, args.ranks);
+        encoder.buffer(40, args.missing);
+        encoder.buffer(48, args.keys);
+        encoder.value(56, args.width);
+        encoder.value(60, args.count);
+    }
+}
+
+/// Mapping, 4 of 7: the pixels of the sites, in order.
+#[derive(Debug, Clone, Copy)]
+pub enum ListSites {}
+
+/// Arguments of [`ListSites`].
+#[derive(Debug, Clone, Copy)]
+pub struct ListSitesArgs<'a> {
+    /// read
+    pub bits: View<'a, u32>,
+    /// read
+    pub ranks: View<'a, u32>,
+    /// written
+    pub order_pixels: View<'a, u32>,
     /// a value
     pub width: u32,
     /// a value
     pub height: u32,
 }
 
-impl Shader for FindColor {
-    type Args<'a> = FindColorArgs<'a>;
+impl Shader for ListSites {
+    type Args<'a> = ListSitesArgs<'a>;
 
     const CODE: Code = Code {
-        name: "find_color",
-        words: include_spirv!("../spv/find_color.spv"),
+        name: "list_sites",
+        words: include_spirv!("../spv/list_sites.spv"),
         without_float64: None,
-        argument_bytes: 48,
+        argument_bytes: 32,
         buffers: &[
-            BufferArgument { name: "colors", offset: 0, access: Access::Read },
-            BufferArgument { name: "sites", offset: 8, access: Access::Read },
-            BufferArgument { name: "debris", offset: 16, access: Access::Read },
-            BufferArgument { name: "found", offset: 24, access: Access::Write },
-            BufferArgument { name: "count", offset: 32, access: Access::Read },
+            BufferArgument { name: "bits", offset: 0, access: Access::Read },
+            BufferArgument { name: "ranks", offset: 8, access: Access::Read },
+            BufferArgument { name: "order_pixels", offset: 16, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "e5931fd42e78a4a599b28ca3babc8016ec9a8bd3d29434a59d7f72accb39759f",
+        source_hash: "f457b591f46d8bdaebdc9b53c968ddd9791fae59d4d87515af77584584bf7957",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.colors);
-        encoder.buffer(8, args.sites);
-        encoder.buffer(16, args.debris);
-        encoder.buffer(24, args.found);
-        encoder.buffer(32, args.count);
-        encoder.value(40, args.width);
-        encoder.value(44, args.height);
+        encoder.buffer(0, args.bits);
+        encoder.buffer(8, args.ranks);
+        encoder.buffer(16, args.order_pixels);
+        encoder.value(24, args.width);
+        encoder.value(28, args.height);
     }
 }
 
-/// Mapping, 1 of 5: the pixel of each point, in integers alone from the bits of its coordinates; the lowest index keeps it.
+/// Mapping, 1 of 7: the pixel of each point, in integers alone from the bits of its coordinates, and a bit for each pixel that
+/// has a point.
 #[derive(Debug, Clone, Copy)]
 pub enum MapPoints {}
 
@@ -550,7 +623,7 @@ pub struct MapPointsArgs<'a> {
     /// written
     pub pixels: View<'a, u32>,
     /// read and written
-    pub owner: View<'a, u32>,
+    pub bits: View<'a, u32>,
     /// a value
     pub translation_x: i64,
     /// a value
@@ -578,19 +651,19 @@ impl Shader for MapPoints {
         buffers: &[
             BufferArgument { name: "points", offset: 0, access: Access::Read },
             BufferArgument { name: "pixels", offset: 8, access: Access::Write },
-            BufferArgument { name: "owner", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "bits", offset: 16, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "67966ffb40ff7c73da9e34a345fe6b903399d3bd3cfefa047ac8f4238e967663",
+        source_hash: "ad21731c87f7cd0543be94f1c0795a7bc554d38006c08c4ac09120c37f44d8f9",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
         encoder.buffer(0, args.points);
         encoder.buffer(8, args.pixels);
-        encoder.buffer(16, args.owner);
+        encoder.buffer(16, args.bits);
         encoder.value(24, args.translation_x);
         encoder.value(32, args.translation_y);
         encoder.value(40, args.exponent);
@@ -601,8 +674,8 @@ impl Shader for MapPoints {
     }
 }
 
-/// Debris, 1 of 3: marks every pixel that has no closer neighbor of its own color, and appends it to the debris. The order
-/// of what is appended is that of arrival, and no result depends on it.
+/// Coloring, 8 of 8: marks every pixel of the tiles that were left that has no closer neighbor of its own color, as
+/// debris.
 #[derive(Debug, Clone, Copy)]
 pub enum MarkDebris {}
 
@@ -613,14 +686,14 @@ pub struct MarkDebrisArgs<'a> {
     pub colors: View<'a, u32>,
     /// read
     pub sites: View<'a, u32>,
-    /// written
-    pub state: View<'a, u32>,
-    /// written
-    pub debris: View<'a, u32>,
+    /// read
+    pub left: View<'a, u32>,
+    /// read
+    pub left_count: View<'a, u32>,
     /// read and written
-    pub total: View<'a, u32>,
-    /// read and written
-    pub marked: View<'a, u32>,
+    pub debris_bits: View<'a, u32>,
+    /// written
+    pub any_debris: View<'a, u32>,
     /// a value
     pub width: u32,
     /// a value
@@ -638,83 +711,31 @@ impl Shader for MarkDebris {
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::Read },
             BufferArgument { name: "sites", offset: 8, access: Access::Read },
-            BufferArgument { name: "state", offset: 16, access: Access::Write },
-            BufferArgument { name: "debris", offset: 24, access: Access::Write },
-            BufferArgument { name: "total", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "marked", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "left", offset: 16, access: Access::Read },
+            BufferArgument { name: "left_count", offset: 24, access: Access::Read },
+            BufferArgument { name: "debris_bits", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "any_debris", offset: 40, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "163bf73ae49204a219d27ba9caee06ccd4b7f70b5d71314836b98b05370d33ff",
+        source_hash: "7c02d3834f7509fe379f8919a31418bdb43dea973441adb8c4154451eb2506be",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
         encoder.buffer(0, args.colors);
         encoder.buffer(8, args.sites);
-        encoder.buffer(16, args.state);
-        encoder.buffer(24, args.debris);
-        encoder.buffer(32, args.total);
-        encoder.buffer(40, args.marked);
+        encoder.buffer(16, args.left);
+        encoder.buffer(24, args.left_count);
+        encoder.buffer(32, args.debris_bits);
+        encoder.buffer(40, args.any_debris);
         encoder.value(48, args.width);
         encoder.value(52, args.height);
     }
 }
 
-/// Mapping, 4 of 5: what the missing points are sorted by, the index of their pixel.
-#[derive(Debug, Clone, Copy)]
-pub enum MissingKeys {}
-
-/// Arguments of [`MissingKeys`].
-#[derive(Debug, Clone, Copy)]
-pub struct MissingKeysArgs<'a> {
-    /// read
-    pub pixels: View<'a, u32>,
-    /// read
-    pub missing: View<'a, u32>,
-    /// written
-    pub keys: View<'a, u32>,
-    /// read, may be left out
-    pub counter: Option<View<'a, u32>>,
-    /// a value
-    pub limit: u32,
-    /// a value
-    pub width: u32,
-}
-
-impl Shader for MissingKeys {
-    type Args<'a> = MissingKeysArgs<'a>;
-
-    const CODE: Code = Code {
-        name: "missing_keys",
-        words: include_spirv!("../spv/missing_keys.spv"),
-        without_float64: None,
-        argument_bytes: 40,
-        buffers: &[
-            BufferArgument { name: "pixels", offset: 0, access: Access::Read },
-            BufferArgument { name: "missing", offset: 8, access: Access::Read },
-            BufferArgument { name: "keys", offset: 16, access: Access::Write },
-            BufferArgument { name: "counter", offset: 24, access: Access::Read },
-        ],
-        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
-        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
-        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "90db7adbd75c000b13b969c28928313692cb0f722bbe6855f2c3c0871e2752de",
-        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
-    };
-
-    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.pixels);
-        encoder.buffer(8, args.missing);
-        encoder.buffer(16, args.keys);
-        encoder.optional(24, args.counter);
-        encoder.value(32, args.limit);
-        encoder.value(36, args.width);
-    }
-}
-
-/// Mapping, 5 of 5: puts the missing points, sorted, behind the sites.
+/// Mapping, 7 of 7: puts the missing points, sorted, behind the sites.
 #[derive(Debug, Clone, Copy)]
 pub enum NumberMissing {}
 
@@ -756,7 +777,7 @@ impl Shader for NumberMissing {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "721f21b8383c14ef393f6bf365c1979d8baac09fc529ca708781de1c4000d565",
+        source_hash: "f76433f35140486a644ed82828f491a06dd7c18a50ca9054e259340704110181",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -771,111 +792,232 @@ impl Shader for NumberMissing {
     }
 }
 
-/// Mapping, 3 of 5: puts each site at its number, which is how many pixels before its own have an owner.
+/// Coloring, 2 of 8: the workgroups of all kernels that follow: none if no tile is left. Sizes of dispatches stand four words
+/// apart.
 #[derive(Debug, Clone, Copy)]
-pub enum NumberSites {}
+pub enum PlanBands {}
 
-/// Arguments of [`NumberSites`].
+/// Arguments of [`PlanBands`].
 #[derive(Debug, Clone, Copy)]
-pub struct NumberSitesArgs<'a> {
+pub struct PlanBandsArgs<'a> {
     /// read
-    pub pixels: View<'a, u32>,
-    /// read
-    pub owner: View<'a, u32>,
-    /// read
-    pub number: View<'a, u32>,
+    pub left_count: View<'a, u32>,
     /// written
-    pub order: View<'a, u32>,
-    /// written
-    pub order_pixels: View<'a, u32>,
+    pub groups: View<'a, u32>,
     /// a value
-    pub width: u32,
+    pub column_groups: u32,
     /// a value
-    pub count: u32,
+    pub fill_groups: u32,
+    /// a value
+    pub stack_groups: u32,
+    /// a value
+    pub merge_groups: u32,
 }
 
-impl Shader for NumberSites {
-    type Args<'a> = NumberSitesArgs<'a>;
+impl Shader for PlanBands {
+    type Args<'a> = PlanBandsArgs<'a>;
 
     const CODE: Code = Code {
-        name: "number_sites",
-        words: include_spirv!("../spv/number_sites.spv"),
-        without_float64: None,
-        argument_bytes: 48,
-        buffers: &[
-            BufferArgument { name: "pixels", offset: 0, access: Access::Read },
-            BufferArgument { name: "owner", offset: 8, access: Access::Read },
-            BufferArgument { name: "number", offset: 16, access: Access::Read },
-            BufferArgument { name: "order", offset: 24, access: Access::Write },
-            BufferArgument { name: "order_pixels", offset: 32, access: Access::Write },
-        ],
-        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
-        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
-        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "75e311063e77a8529c38b681b1979e56c6e869658d74af6f4bcada5e04113a83",
-        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
-    };
-
-    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.pixels);
-        encoder.buffer(8, args.owner);
-        encoder.buffer(16, args.number);
-        encoder.buffer(24, args.order);
-        encoder.buffer(32, args.order_pixels);
-        encoder.value(40, args.width);
-        encoder.value(44, args.count);
-    }
-}
-
-/// Coloring, 1 of 6: writes the number of each site into its pixel of a grid that held none.
-#[derive(Debug, Clone, Copy)]
-pub enum PlaceSites {}
-
-/// Arguments of [`PlaceSites`].
-#[derive(Debug, Clone, Copy)]
-pub struct PlaceSitesArgs<'a> {
-    /// read
-    pub sites: View<'a, u32>,
-    /// written
-    pub grid: View<'a, u32>,
-    /// read, may be left out
-    pub counter: Option<View<'a, u32>>,
-    /// a value
-    pub limit: u32,
-    /// a value
-    pub width: u32,
-}
-
-impl Shader for PlaceSites {
-    type Args<'a> = PlaceSitesArgs<'a>;
-
-    const CODE: Code = Code {
-        name: "place_sites",
-        words: include_spirv!("../spv/place_sites.spv"),
+        name: "plan_bands",
+        words: include_spirv!("../spv/plan_bands.spv"),
         without_float64: None,
         argument_bytes: 32,
         buffers: &[
-            BufferArgument { name: "sites", offset: 0, access: Access::Read },
-            BufferArgument { name: "grid", offset: 8, access: Access::Write },
-            BufferArgument { name: "counter", offset: 16, access: Access::Read },
+            BufferArgument { name: "left_count", offset: 0, access: Access::Read },
+            BufferArgument { name: "groups", offset: 8, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "928894cc661dd39537c9e0655e880726db978bb96ef0d91e0c923dec7cb56fe9",
+        source_hash: "d8d7487864e364b59815294320e363b7e69608f75579fe7d2a1ecc0092d530cd",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.sites);
-        encoder.buffer(8, args.grid);
-        encoder.optional(16, args.counter);
-        encoder.value(24, args.limit);
-        encoder.value(28, args.width);
+        encoder.buffer(0, args.left_count);
+        encoder.buffer(8, args.groups);
+        encoder.value(16, args.column_groups);
+        encoder.value(20, args.fill_groups);
+        encoder.value(24, args.stack_groups);
+        encoder.value(28, args.merge_groups);
     }
 }
 
-/// Coloring, 5 of 6: merges the stacks of each row from left to right, in place: entries at the end of the left ones and at
+/// Repair, 3 of 4: each pixel of a list takes the best color on offer; where that changes it the debris around it goes to the
+/// next list. Only if all debris has been found.
+#[derive(Debug, Clone, Copy)]
+pub enum RecolorDebris {}
+
+/// Arguments of [`RecolorDebris`].
+#[derive(Debug, Clone, Copy)]
+pub struct RecolorDebrisArgs<'a> {
+    /// read and written
+    pub colors: View<'a, u32>,
+    /// read
+    pub sites: View<'a, u32>,
+    /// read
+    pub list: View<'a, u32>,
+    /// read
+    pub count: View<'a, u32>,
+    /// written
+    pub next_list: View<'a, u32>,
+    /// read and written
+    pub next_count: View<'a, u32>,
+    /// read and written
+    pub debris_bits: View<'a, u32>,
+    /// read and written
+    pub listed_bits: View<'a, u32>,
+    /// read and written
+    pub next_bits: View<'a, u32>,
+    /// read
+    pub phase: View<'a, u32>,
+    /// a value
+    pub width: u32,
+    /// a value
+    pub height: u32,
+}
+
+impl Shader for RecolorDebris {
+    type Args<'a> = RecolorDebrisArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "recolor_debris",
+        words: include_spirv!("../spv/recolor_debris.spv"),
+        without_float64: None,
+        argument_bytes: 88,
+        buffers: &[
+            BufferArgument { name: "colors", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "sites", offset: 8, access: Access::Read },
+            BufferArgument { name: "list", offset: 16, access: Access::Read },
+            BufferArgument { name: "count", offset: 24, access: Access::Read },
+            BufferArgument { name: "next_list", offset: 32, access: Access::Write },
+            BufferArgument { name: "next_count", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "debris_bits", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "listed_bits", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "next_bits", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "phase", offset: 72, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "0d16327257628d9903ff0b9c5f987523872332f920483122458e25d82ab39de0",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.colors);
+        encoder.buffer(8, args.sites);
+        encoder.buffer(16, args.list);
+        encoder.buffer(24, args.count);
+        encoder.buffer(32, args.next_list);
+        encoder.buffer(40, args.next_count);
+        encoder.buffer(48, args.debris_bits);
+        encoder.buffer(56, args.listed_bits);
+        encoder.buffer(64, args.next_bits);
+        encoder.buffer(72, args.phase);
+        encoder.value(80, args.width);
+        encoder.value(84, args.height);
+    }
+}
+
+/// Repair, 4 of 4: finds the rest of the debris, and then recolors the rest of it if told to, in rounds of one workgroup; at most
+/// ROUNDS of them, then `unfinished` says whether to go on.
+///
+/// First, debris that was found in the last round loses its color, and what has thereby become debris is found; until there is
+/// none. Then all that is listed takes the best color on offer, and where that changes a pixel the debris around it is listed
+/// for the next round; until nothing changes.
+///
+/// Two lists take turns, each with bits of its own for what stands on it.
+#[derive(Debug, Clone, Copy)]
+pub enum Repair {}
+
+/// Arguments of [`Repair`].
+#[derive(Debug, Clone, Copy)]
+pub struct RepairArgs<'a> {
+    /// read and written
+    pub colors: View<'a, u32>,
+    /// read
+    pub sites: View<'a, u32>,
+    /// read and written
+    pub list: View<'a, u32>,
+    /// read and written
+    pub other_list: View<'a, u32>,
+    /// read and written
+    pub debris_bits: View<'a, u32>,
+    /// read and written
+    pub listed_bits: View<'a, u32>,
+    /// read and written
+    pub other_bits: View<'a, u32>,
+    /// read
+    pub count: View<'a, u32>,
+    /// read
+    pub progress: View<'a, u32>,
+    /// written
+    pub counted: View<'a, u32>,
+    /// written
+    pub progressed: View<'a, u32>,
+    /// written
+    pub unfinished: View<'a, u32>,
+    /// a value
+    pub width: u32,
+    /// a value
+    pub height: u32,
+    /// a value
+    pub recolors: u32,
+}
+
+impl Shader for Repair {
+    type Args<'a> = RepairArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "repair",
+        words: include_spirv!("../spv/repair.spv"),
+        without_float64: None,
+        argument_bytes: 108,
+        buffers: &[
+            BufferArgument { name: "colors", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "sites", offset: 8, access: Access::Read },
+            BufferArgument { name: "list", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "other_list", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "debris_bits", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "listed_bits", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "other_bits", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "count", offset: 56, access: Access::Read },
+            BufferArgument { name: "progress", offset: 64, access: Access::Read },
+            BufferArgument { name: "counted", offset: 72, access: Access::Write },
+            BufferArgument { name: "progressed", offset: 80, access: Access::Write },
+            BufferArgument { name: "unfinished", offset: 88, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ROUNDS", id: 1, default: 256 },
+        ],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "3d24664d267fbb32219670e66e51d759784c5e0a36d294bf01f8023bb68aba92",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.colors);
+        encoder.buffer(8, args.sites);
+        encoder.buffer(16, args.list);
+        encoder.buffer(24, args.other_list);
+        encoder.buffer(32, args.debris_bits);
+        encoder.buffer(40, args.listed_bits);
+        encoder.buffer(48, args.other_bits);
+        encoder.buffer(56, args.count);
+        encoder.buffer(64, args.progress);
+        encoder.buffer(72, args.counted);
+        encoder.buffer(80, args.progressed);
+        encoder.buffer(88, args.unfinished);
+        encoder.value(96, args.width);
+        encoder.value(100, args.height);
+        encoder.value(104, args.recolors);
+    }
+}
+
+/// Coloring, 6 of 8: merges the stacks of each row from left to right, in place: entries at the end of the left ones and at
 /// the beginning of each next one win nothing any more. `starts` gets the first pixel of each band's stack; an empty one has
 /// that of the next.
 #[derive(Debug, Clone, Copy)]
@@ -886,6 +1028,8 @@ pub enum RowMerge {}
 pub struct RowMergeArgs<'a> {
     /// read
     pub nearest: View<'a, u32>,
+    /// read
+    pub wanted: View<'a, u32>,
     /// read and written
     pub entries: View<'a, u32>,
     /// read and written
@@ -907,34 +1051,36 @@ impl Shader for RowMerge {
         name: "row_merge",
         words: include_spirv!("../spv/row_merge.spv"),
         without_float64: None,
-        argument_bytes: 44,
+        argument_bytes: 52,
         buffers: &[
             BufferArgument { name: "nearest", offset: 0, access: Access::Read },
-            BufferArgument { name: "entries", offset: 8, access: Access::ReadWrite },
-            BufferArgument { name: "live", offset: 16, access: Access::ReadWrite },
-            BufferArgument { name: "starts", offset: 24, access: Access::Write },
+            BufferArgument { name: "wanted", offset: 8, access: Access::Read },
+            BufferArgument { name: "entries", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "live", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "starts", offset: 32, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "497e87aa8c77df3c2282153f4289b245de251ab73e27e97390e472c3e83b6b56",
+        source_hash: "1826f1ec2217ffd451928e7e29ad7856fd5d65fb172d72c096ecb4f297e73a73",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
         encoder.buffer(0, args.nearest);
-        encoder.buffer(8, args.entries);
-        encoder.buffer(16, args.live);
-        encoder.buffer(24, args.starts);
-        encoder.value(32, args.width);
-        encoder.value(36, args.height);
-        encoder.value(40, args.band);
+        encoder.buffer(8, args.wanted);
+        encoder.buffer(16, args.entries);
+        encoder.buffer(24, args.live);
+        encoder.buffer(32, args.starts);
+        encoder.value(40, args.width);
+        encoder.value(44, args.height);
+        encoder.value(48, args.band);
     }
 }
 
-/// Coloring, 4 of 6: for each row of each band of columns the stack of its proximate sites, those that are nearest to some
-/// pixel of the whole row. `live` holds for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16
-/// bits.
+/// Coloring, 5 of 8: for each row of each band of columns the stack of its proximate sites, those that are nearest to some
+/// pixel of the whole row. A workgroup takes WORKGROUP rows of a band through shared memory, an invocation each. `live` holds
+/// for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits.
 #[derive(Debug, Clone, Copy)]
 pub enum RowStacks {}
 
@@ -943,7 +1089,9 @@ pub enum RowStacks {}
 pub struct RowStacksArgs<'a> {
     /// read
     pub nearest: View<'a, u32>,
-    /// read and written
+    /// read
+    pub wanted: View<'a, u32>,
+    /// written
     pub entries: View<'a, u32>,
     /// written
     pub live: View<'a, u32>,
@@ -951,8 +1099,6 @@ pub struct RowStacksArgs<'a> {
     pub width: u32,
     /// a value
     pub height: u32,
-    /// a value
-    pub band: u32,
 }
 
 impl Shader for RowStacks {
@@ -962,85 +1108,88 @@ impl Shader for RowStacks {
         name: "row_stacks",
         words: include_spirv!("../spv/row_stacks.spv"),
         without_float64: None,
-        argument_bytes: 36,
+        argument_bytes: 40,
         buffers: &[
             BufferArgument { name: "nearest", offset: 0, access: Access::Read },
-            BufferArgument { name: "entries", offset: 8, access: Access::ReadWrite },
-            BufferArgument { name: "live", offset: 16, access: Access::Write },
+            BufferArgument { name: "wanted", offset: 8, access: Access::Read },
+            BufferArgument { name: "entries", offset: 16, access: Access::Write },
+            BufferArgument { name: "live", offset: 24, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
-        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "BAND", id: 1, default: 64 },
+        ],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "f23aa1bdc964e1409b2de0d11201c2575de294ef4d47ff2b21f6f57e254ed0e1",
+        source_hash: "a22ebc84e00f8ff98c26d2fe8ea9590b0473300cc6645809c4ec2c5737ab5daf",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
         encoder.buffer(0, args.nearest);
-        encoder.buffer(8, args.entries);
-        encoder.buffer(16, args.live);
-        encoder.value(24, args.width);
-        encoder.value(28, args.height);
-        encoder.value(32, args.band);
+        encoder.buffer(8, args.wanted);
+        encoder.buffer(16, args.entries);
+        encoder.buffer(24, args.live);
+        encoder.value(32, args.width);
+        encoder.value(36, args.height);
     }
 }
 
-/// Recoloring, 2 of 2: all debris takes what it found at once. Where a pixel with debris around it changed, one more round
-/// is wanted: `again` is then the number of debris pixels.
+/// Repair, 2 of 4: what is debris because a neighbor has lost its color, of all debris that was marked first.
 #[derive(Debug, Clone, Copy)]
-pub enum TakeColor {}
+pub enum SpreadDebris {}
 
-/// Arguments of [`TakeColor`].
+/// Arguments of [`SpreadDebris`].
 #[derive(Debug, Clone, Copy)]
-pub struct TakeColorArgs<'a> {
+pub struct SpreadDebrisArgs<'a> {
     /// read and written
     pub colors: View<'a, u32>,
     /// read
-    pub state: View<'a, u32>,
-    /// read
-    pub debris: View<'a, u32>,
-    /// read
-    pub found: View<'a, u32>,
-    /// read
-    pub count: View<'a, u32>,
+    pub sites: View<'a, u32>,
     /// read and written
-    pub again: View<'a, u32>,
+    pub list: View<'a, u32>,
+    /// read and written
+    pub debris_bits: View<'a, u32>,
+    /// read and written
+    pub count: View<'a, u32>,
+    /// read
+    pub first_count: View<'a, u32>,
     /// a value
     pub width: u32,
     /// a value
     pub height: u32,
 }
 
-impl Shader for TakeColor {
-    type Args<'a> = TakeColorArgs<'a>;
+impl Shader for SpreadDebris {
+    type Args<'a> = SpreadDebrisArgs<'a>;
 
     const CODE: Code = Code {
-        name: "take_color",
-        words: include_spirv!("../spv/take_color.spv"),
+        name: "spread_debris",
+        words: include_spirv!("../spv/spread_debris.spv"),
         without_float64: None,
         argument_bytes: 56,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::ReadWrite },
-            BufferArgument { name: "state", offset: 8, access: Access::Read },
-            BufferArgument { name: "debris", offset: 16, access: Access::Read },
-            BufferArgument { name: "found", offset: 24, access: Access::Read },
-            BufferArgument { name: "count", offset: 32, access: Access::Read },
-            BufferArgument { name: "again", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "sites", offset: 8, access: Access::Read },
+            BufferArgument { name: "list", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "debris_bits", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "count", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "first_count", offset: 40, access: Access::Read },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "78bc8ce7b3fd85bdeb97d4d4fd98eda8034b442c2eaeabc91032453086093661",
+        source_hash: "85ee698cebff3bc6dbc4914ef378c1fe14de5b99c173f8dbd709e0b9cd6f921c",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
         encoder.buffer(0, args.colors);
-        encoder.buffer(8, args.state);
-        encoder.buffer(16, args.debris);
-        encoder.buffer(24, args.found);
+        encoder.buffer(8, args.sites);
+        encoder.buffer(16, args.list);
+        encoder.buffer(24, args.debris_bits);
         encoder.buffer(32, args.count);
-        encoder.buffer(40, args.again);
+        encoder.buffer(40, args.first_count);
         encoder.value(48, args.width);
         encoder.value(52, args.height);
     }

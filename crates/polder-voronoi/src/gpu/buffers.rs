@@ -1,32 +1,49 @@
 //! What the stage holds on the device.
 
-use super::Bands;
+use super::Tuning;
+use crate::reference::kernels::{TILE_HEIGHT, TILE_WIDTH};
 use crate::{Counts, MAX_SIDE};
-use polder_vulkan::primitives::{Compact, Scan, Sort};
+use polder_vulkan::primitives::{Scan, Sort};
 use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunReport, View};
 
 /// The most points: kernels reach 4 GiB from an address.
 pub(super) const MOST_POINTS: usize = 1 << 28;
-const WORDS: usize = 40;
+const WORDS: usize = 72;
 
 /// Places of single words in the counts: views begin at multiples of 4 words.
 #[derive(Clone, Copy)]
 pub(super) enum Word {
     Sites = 0,
     Missing = 4,
+    /// From here on zeros before coloring.
     Debris = 8,
-    DebrisRounds = 12,
-    RecolorRounds = 16,
-    Marked = 20,
-    Candidates = 24,
-    Again = 28,
-    Groups = 32,
+    AnyDebris = 12,
+    Left = 16,
+    Unfinished = 20,
+    /// Of repair, words four apart; the first counts the debris that was marked.
+    Progress = 24,
+    DebrisRounds = 28,
+    Phase = 32,
+    ListedOnce = 44,
+    Listed = 48,
+    /// Five sizes of dispatches.
+    Groups = 52,
+}
+
+/// Dispatches whose sizes `plan_bands` writes, in its order.
+#[derive(Clone, Copy)]
+pub(super) enum Planned {
+    ColumnEnds,
+    ColumnFill,
+    RowStacks,
+    RowMerge,
+    Tiles,
 }
 
 /// Results and scratch memory of the stage, for one number of points and one size of the grid.
 ///
 /// Results are what [`Sites`](crate::Sites) and [`Diagram`](crate::Diagram) hold, under the same names. Scratch memory is
-/// three words a pixel and, beside the sort, four words a point.
+/// two words and half a byte a pixel and, beside the sort, one word and a quarter byte a point.
 #[derive(Debug)]
 pub struct Buffers {
     pub(super) points: usize,
@@ -34,54 +51,101 @@ pub struct Buffers {
     pub(super) order: Buffer<u32>,
     pub(super) pixels: Buffer<[u16; 2]>,
     pub(super) colors: Buffer<u32>,
-    pub(super) debris: Buffer<u32>,
     pub(super) counts: Buffer<u32>,
-    /// By pixel: who owns it; then site numbers in their pixels; then which pixels are debris.
+    /// A bit a pixel, 32 pixels of a row in a word.
+    pub(super) site_bits: Buffer<u32>,
+    pub(super) site_ranks: Buffer<u32>,
+    /// Three times a bit a pixel, without gaps: which pixels are debris, and which stand on the one list and the other.
+    pub(super) debris_bits: Buffer<u32>,
+    /// The pixels of the points; then the nearest row of each pixel, half a word; then lists of debris.
     pub(super) a: Buffer<u32>,
-    /// By pixel: how many sites come before it; then the nearest row; then debris as it is found, and colors for it.
+    /// What the missing points are sorted by; then entries of the rows' stacks; then lists of debris.
     pub(super) b: Buffer<u32>,
-    /// By pixel: entries of the rows' stacks; then candidates for debris.
-    pub(super) c: Buffer<u32>,
-    pub(super) point_pixels: Buffer<u32>,
-    pub(super) lost: Buffer<u32>,
     pub(super) missing: Buffer<u32>,
-    pub(super) keys: Buffer<u32>,
+    /// A bit a point.
+    pub(super) lost: Buffer<u32>,
+    pub(super) lost_ranks: Buffer<u32>,
+    pub(super) left: Buffer<u32>,
+    pub(super) wanted: Buffer<u32>,
     pub(super) ends: Buffer<u32>,
     pub(super) live: Buffer<u32>,
     pub(super) starts: Buffer<u32>,
     pub(super) scan: Scan,
-    pub(super) compact_points: Compact,
-    pub(super) compact_pixels: Compact,
     pub(super) sort: Sort<u32>,
 }
 
-/// Words of bands: column ends, and row stacks.
-fn bands_of([width, height]: [u32; 2], bands: Bands) -> [usize; 2] {
-    [width as usize * height.div_ceil(bands.rows) as usize, height as usize * width.div_ceil(bands.columns) as usize]
+/// Words of a bit a pixel, so many that another view can begin behind them.
+fn debris_words(pixels: usize) -> usize {
+    pixels.div_ceil(128) * 4
 }
 
-pub(super) fn estimate(device: &Device, points: usize, size: [u32; 2], bands: Bands) -> Estimate {
-    let pixels = size[0] as usize * size[1] as usize;
-    let [ends, stacks] = bands_of(size, bands);
+/// How many words each array has.
+struct Lengths {
+    points: usize,
+    pixels: usize,
+    site_bits: usize,
+    debris_bits: usize,
+    scratch: usize,
+    lost: usize,
+    tiles: usize,
+    tile_rows: usize,
+    ends: usize,
+    stacks: usize,
+}
+
+impl Lengths {
+    fn of(points: usize, [width, height]: [u32; 2], tuning: Tuning) -> Self {
+        let (columns, rows) = (width as usize, height as usize);
+        let pixels = columns * rows;
+        let site_bits = columns.div_ceil(32) * rows;
+        let tile_rows = height.div_ceil(TILE_HEIGHT) as usize;
+        Lengths {
+            points,
+            pixels,
+            site_bits,
+            debris_bits: 3 * debris_words(pixels),
+            scratch: pixels.max(points),
+            lost: points.div_ceil(32),
+            tiles: width.div_ceil(TILE_WIDTH) as usize * tile_rows,
+            tile_rows,
+            ends: columns * height.div_ceil(tuning.rows) as usize,
+            stacks: rows * width.div_ceil(tuning.columns) as usize,
+        }
+    }
+
+    fn scanned(&self) -> usize {
+        self.site_bits.max(self.lost)
+    }
+}
+
+pub(super) fn estimate(device: &Device, points: usize, size: [u32; 2], tuning: Tuning) -> Estimate {
+    let lengths = Lengths::of(points, size, tuning);
     let mut estimate = Estimate::new().buffer::<u32>("counts", WORDS);
-    for name in ["order", "pixels of sites", "pixels of points", "lost", "missing", "keys"] {
-        estimate = estimate.buffer::<u32>(name, points);
+    for (name, len) in [
+        ("order", lengths.points),
+        ("pixels of points", lengths.points),
+        ("colors", lengths.pixels),
+        ("bits of sites", lengths.site_bits),
+        ("ranks of sites", lengths.site_bits),
+        ("bits of debris", lengths.debris_bits),
+        ("scratch a", lengths.scratch),
+        ("scratch b", lengths.scratch),
+        ("missing points", lengths.points),
+        ("bits of points that lost", lengths.lost),
+        ("ranks of points that lost", lengths.lost),
+        ("tiles left", lengths.tiles),
+        ("rows of tiles wanted", lengths.tile_rows),
+        ("column ends", lengths.ends),
+        ("row stacks", lengths.stacks),
+        ("row starts", lengths.stacks),
+    ] {
+        estimate = estimate.buffer::<u32>(name, len);
     }
-    for name in ["colors", "debris", "pixels a", "pixels b", "pixels c"] {
-        estimate = estimate.buffer::<u32>(name, pixels);
-    }
-    estimate
-        .buffer::<u32>("column ends", ends)
-        .buffer::<u32>("row stacks", stacks)
-        .buffer::<u32>("row starts", stacks)
-        .and(Scan::estimate(pixels))
-        .and(Compact::estimate(points))
-        .and(Compact::estimate(pixels))
-        .and(Sort::<u32>::estimate(device, points))
+    estimate.and(Scan::estimate(lengths.scanned())).and(Sort::<u32>::estimate(device, points))
 }
 
 impl Buffers {
-    pub(super) fn new(device: &Device, points: usize, size: [u32; 2], bands: Bands) -> Result<Self, Error> {
+    pub(super) fn new(device: &Device, points: usize, size: [u32; 2], tuning: Tuning) -> Result<Self, Error> {
         let refused = |why| Err(Error::Recording { command: "voronoi buffers", why });
         if points == 0 || points > MOST_POINTS {
             return refused(format!("{points} points; between 1 and {MOST_POINTS} are possible"));
@@ -89,31 +153,30 @@ impl Buffers {
         if size.iter().any(|side| !(1..=MAX_SIDE).contains(side)) {
             return refused(format!("a grid of {size:?}; sides between 1 and {MAX_SIDE} are possible"));
         }
-        estimate(device, points, size, bands).check(device)?;
-        let pixels = size[0] as usize * size[1] as usize;
-        let [ends, stacks] = bands_of(size, bands);
+        estimate(device, points, size, tuning).check(device)?;
+        let lengths = Lengths::of(points, size, tuning);
         let words = |name, len| Buffer::<u32>::new(device, name, len);
         Ok(Buffers {
             points,
             size,
             order: words("order", points)?,
-            pixels: Buffer::new(device, "pixels of sites", points)?,
-            colors: words("colors", pixels)?,
-            debris: words("debris", pixels)?,
+            pixels: Buffer::new(device, "pixels of points", points)?,
+            colors: words("colors", lengths.pixels)?,
             counts: words("counts", WORDS)?,
-            a: words("pixels a", pixels)?,
-            b: words("pixels b", pixels)?,
-            c: words("pixels c", pixels)?,
-            point_pixels: words("pixels of points", points)?,
-            lost: words("lost", points)?,
-            missing: words("missing", points)?,
-            keys: words("keys", points)?,
-            ends: words("column ends", ends)?,
-            live: words("row stacks", stacks)?,
-            starts: words("row starts", stacks)?,
-            scan: Scan::new(device, pixels)?,
-            compact_points: Compact::new(device, points)?,
-            compact_pixels: Compact::new(device, pixels)?,
+            site_bits: words("bits of sites", lengths.site_bits)?,
+            site_ranks: words("ranks of sites", lengths.site_bits)?,
+            debris_bits: words("bits of debris", lengths.debris_bits)?,
+            a: words("scratch a", lengths.scratch)?,
+            b: words("scratch b", lengths.scratch)?,
+            missing: words("missing points", points)?,
+            lost: words("bits of points that lost", lengths.lost)?,
+            lost_ranks: words("ranks of points that lost", lengths.lost)?,
+            left: words("tiles left", lengths.tiles)?,
+            wanted: words("rows of tiles wanted", lengths.tile_rows)?,
+            ends: words("column ends", lengths.ends)?,
+            live: words("row stacks", lengths.stacks)?,
+            starts: words("row starts", lengths.stacks)?,
+            scan: Scan::new(device, lengths.scanned())?,
             sort: Sort::new(device, points)?,
         })
     }
@@ -143,9 +206,19 @@ impl Buffers {
         self.colors.view()
     }
 
-    /// Which pixels are debris, ascending: as many as [`Buffers::debris_count`] says. Behind them it is not defined.
-    pub fn debris(&self) -> View<'_, u32> {
-        self.debris.view()
+    /// Which pixels have a site: bit `x % 32` of word `x / 32` of row `y`, rows of whole words.
+    pub fn site_bits(&self) -> View<'_, u32> {
+        self.site_bits.view()
+    }
+
+    /// For each word of [`Buffers::site_bits`] the number of sites before it: the number of its first site, if it has one.
+    pub fn site_ranks(&self) -> View<'_, u32> {
+        self.site_ranks.view()
+    }
+
+    /// Which pixels are debris: bit `i % 32` of word `i / 32` for the pixel at index `i` of the colors.
+    pub fn debris_bits(&self) -> Result<View<'_, u32>, Error> {
+        self.bits_of_debris(0)
     }
 
     /// How many points are sites.
@@ -158,12 +231,29 @@ impl Buffers {
         self.word(Word::Debris)
     }
 
+    /// The debris, or the debris on one of the lists.
+    pub(super) fn bits_of_debris(&self, number: usize) -> Result<View<'_, u32>, Error> {
+        let pixels = self.size[0] as usize * self.size[1] as usize;
+        let first = number * debris_words(pixels);
+        self.debris_bits.slice(first..first + pixels.div_ceil(32))
+    }
+
     pub(super) fn word(&self, word: Word) -> Result<View<'_, u32>, Error> {
         self.counts.slice(word as usize..word as usize + 1)
     }
 
-    pub(super) fn groups(&self) -> Result<View<'_, u32>, Error> {
-        self.counts.slice(Word::Groups as usize..Word::Groups as usize + 3)
+    /// What `repair` keeps from one dispatch to the next.
+    pub(super) fn progress(&self) -> Result<View<'_, u32>, Error> {
+        self.counts.slice(Word::Progress as usize..Word::Groups as usize)
+    }
+
+    pub(super) fn groups(&self, planned: Planned) -> Result<View<'_, u32>, Error> {
+        let place = Word::Groups as usize + 4 * planned as usize;
+        self.counts.slice(place..place + 3)
+    }
+
+    pub(super) fn all_groups(&self) -> Result<View<'_, u32>, Error> {
+        self.counts.slice(Word::Groups as usize..WORDS)
     }
 
     /// Asks a recording to bring the counts back.
@@ -185,16 +275,20 @@ impl CountsRead {
     /// The counts, after the whole stage.
     pub fn counts(&self, report: &RunReport) -> Counts {
         let words = report.words(self.words);
-        let word = |word: Word| words.get(word as usize).map_or(0, |&word| u64::from(word));
+        let at = |place: usize| words.get(place).map_or(0, |&word| u64::from(word));
         Counts {
             points: self.points,
             pixels: self.pixels,
-            sites: word(Word::Sites),
-            missing: word(Word::Missing),
-            debris: word(Word::Debris),
+            sites: at(Word::Sites as usize),
+            missing: at(Word::Missing as usize),
+            debris: at(Word::Debris as usize),
             // The device counts the rounds that found some.
-            debris_rounds: word(Word::DebrisRounds) + 1,
-            recolor_rounds: word(Word::RecolorRounds),
+            debris_rounds: at(Word::DebrisRounds as usize) + 1,
         }
+    }
+
+    /// How many tiles of the grid had to be colored by bands, after the whole stage.
+    pub fn tiles_left(&self, report: &RunReport) -> u32 {
+        report.words(self.words).get(Word::Left as usize).copied().unwrap_or(0)
     }
 }

@@ -1,6 +1,6 @@
 //! What is appended to a recording, in order.
 
-use super::buffers::{Buffers, Word};
+use super::buffers::{Buffers, Planned, Word};
 use super::{CountsRead, Stage};
 use crate::GridMapping;
 use crate::kernels::*;
@@ -12,8 +12,10 @@ use polder_vulkan::{Error, Recording, View, groups_for};
 const NONE: u32 = u32::MAX;
 /// Invocations of a workgroup, the same in all kernels.
 const WORKGROUP: u32 = 256;
-/// Rounds between two looks of the host at a counter.
-const BATCH: u32 = 8;
+/// Workgroups of kernels that stride over lists whose lengths the device knows.
+const WIDE: [u32; 3] = [256, 1, 1];
+/// Invocations of a workgroup of the rows' kernels, which take a row each.
+pub(super) const ROWS: u32 = 64;
 
 impl Stage {
     /// The whole stage: mapping, coloring, repair. The points must be those, or as many and within the box of those, that
@@ -54,20 +56,22 @@ impl Stage {
             return Err(Error::Recording { command: "map_points", why });
         }
         let [width, height] = buffers.size;
-        let pixel_count = width as usize * height as usize;
         let limit = count as u32;
-        let (pixels, owner, number) = (buffers.point_pixels.view(), buffers.a.view(), buffers.b.view());
+        let (pixels, keys, missing) = (buffers.a.view(), buffers.b.view(), buffers.missing.view());
+        let (bits, ranks) = (buffers.site_bits.view(), buffers.site_ranks.view());
+        let (lost, lost_ranks) = (buffers.lost.view(), buffers.lost_ranks.view());
         let (order, order_pixels) = (buffers.order.view(), buffers.pixels.view().cast::<u32>());
         let (sites, counter) = (buffers.word(Word::Sites)?, buffers.word(Word::Missing)?);
         let groups = groups_for(count, WORKGROUP);
 
-        recording.fill(owner, NONE);
-        recording.fill(number, 0);
+        recording.fill(bits, 0);
+        recording.fill(lost, 0);
+        recording.fill(order, NONE);
         let [translation_x, translation_y] = mapping.translation();
         let arguments = MapPointsArgs {
             points: points.cast::<u64>(),
             pixels,
-            owner,
+            bits,
             translation_x,
             translation_y,
             exponent: mapping.exponent(),
@@ -77,131 +81,180 @@ impl Stage {
             count: limit,
         };
         recording.dispatch(&self.map_points, groups, &arguments);
-        let lost = buffers.lost.view();
-        let arguments = ElectSitesArgs { pixels, owner, owned: number, lost, width, count: limit };
+        self.record_ranks(recording, buffers, bits, ranks, sites);
+        let arguments = ElectSitesArgs { pixels, bits, ranks, order, lost, width, count: limit };
         recording.dispatch(&self.elect_sites, groups, &arguments);
-        buffers.scan.record(recording, pixel_count, number, number, Some(sites));
-        let arguments = NumberSitesArgs { pixels, owner, number, order, order_pixels, width, count: limit };
-        recording.dispatch(&self.number_sites, groups, &arguments);
+        let arguments = ListSitesArgs { bits, ranks, order_pixels, width, height };
+        recording.dispatch(&self.list_sites, groups_for(bits.len(), WORKGROUP), &arguments);
 
-        let (missing, keys) = (buffers.missing.view(), buffers.keys.view());
-        buffers.compact_points.record(recording, count, lost, None, missing, counter);
-        let arguments = MissingKeysArgs { pixels, missing, keys, counter: Some(counter), limit, width };
-        recording.dispatch(&self.missing_keys, groups, &arguments);
-        let bits = (pixel_count as u32 - 1).checked_ilog2().map_or(0, |log| log + 1);
-        buffers.sort.record(recording, Count::on_device(counter, count), keys, Some(missing), bits);
+        self.record_ranks(recording, buffers, lost, lost_ranks, counter);
+        let words = lost.len() as u32;
+        let arguments = ListMissingArgs { lost, lost_ranks, pixels, bits, ranks, missing, keys, width, count: words };
+        recording.dispatch(&self.list_missing, groups_for(lost.len(), WORKGROUP), &arguments);
+        let missing_count = Count::on_device(counter, count);
+        let most_sites = count.min(width as usize * height as usize) as u32;
+        buffers.sort.record(recording, missing_count, keys, Some(missing), 32 - (most_sites - 1).leading_zeros());
         let arguments =
             NumberMissingArgs { pixels, missing, sites, order, order_pixels, counter: Some(counter), limit };
         recording.dispatch(&self.number_missing, groups, &arguments);
         Ok(())
     }
 
-    /// Colors every pixel by its nearest site, as [`reference::color`](crate::reference::color) does. Reads the pixels of
-    /// the sites, and how many there are, at least one.
+    /// How many bits stand before each word of some, and in all.
+    fn record_ranks(
+        &self,
+        recording: &mut Recording,
+        buffers: &Buffers,
+        words: View<'_, u32>,
+        ranks: View<'_, u32>,
+        total: View<'_, u32>,
+    ) {
+        let arguments = CountBitsArgs { words, counts: ranks, count: words.len() as u32 };
+        recording.dispatch(&self.count_bits, groups_for(words.len(), WORKGROUP), &arguments);
+        buffers.scan.record(recording, words.len(), ranks, ranks, Some(total));
+    }
+
+    /// Colors every pixel by its nearest site, as [`reference::color`](crate::reference::color) does, and marks the first
+    /// debris. Reads the bits and ranks of the sites, and their pixels, at least one.
     ///
     /// # Errors
     ///
     /// None that its arguments can cause.
     pub fn record_color(&self, recording: &mut Recording, buffers: &Buffers) -> Result<(), Error> {
         let [width, height] = buffers.size;
-        let pixel_count = width as usize * height as usize;
-        let (grid, nearest, entries) = (buffers.a.view(), buffers.b.view(), buffers.c.view());
-        let (ends, live, starts) = (buffers.ends.view(), buffers.live.view(), buffers.starts.view());
-        let (rows, columns) = (self.bands.rows, self.bands.columns);
+        let (bits, ranks, colors) = (buffers.site_bits.view(), buffers.site_ranks.view(), buffers.colors.view());
+        let (debris_bits, any_debris) = (buffers.debris_bits()?, buffers.word(Word::AnyDebris)?);
+        let (left, left_count, wanted) = (buffers.left.view(), buffers.word(Word::Left)?, buffers.wanted.view());
 
-        recording.fill(grid, NONE);
-        let arguments = PlaceSitesArgs {
-            sites: buffers.pixels.view().cast::<u32>(),
-            grid,
-            counter: Some(buffers.word(Word::Sites)?),
-            limit: buffers.points as u32,
-            width,
-        };
-        recording.dispatch(&self.place_sites, groups_for(buffers.points, WORKGROUP), &arguments);
-        let groups = groups_for(buffers.ends.len(), WORKGROUP);
-        recording.dispatch(&self.column_ends, groups, &ColumnEndsArgs { grid, ends, width, height, band: rows });
-        let arguments = ColumnFillArgs { grid, ends, nearest, width, height, band: rows };
-        recording.dispatch(&self.column_fill, groups, &arguments);
-        let groups = groups_for(buffers.live.len(), WORKGROUP);
-        let arguments = RowStacksArgs { nearest, entries, live, width, height, band: columns };
-        recording.dispatch(&self.row_stacks, groups, &arguments);
-        let arguments = RowMergeArgs { nearest, entries, live, starts, width, height, band: columns };
-        recording.dispatch(&self.row_merge, groups_for(height as usize, WORKGROUP), &arguments);
-        let colors = buffers.colors.view();
-        let arguments = ColorPixelsArgs { grid, nearest, entries, live, starts, colors, width, height, band: columns };
-        recording.dispatch(&self.color_pixels, groups_for(pixel_count, WORKGROUP), &arguments);
+        recording.fill(buffers.counts.slice(Word::Debris as usize..buffers.counts.len())?, 0);
+        recording.fill(buffers.debris_bits.view(), 0);
+        recording.fill(wanted, 0);
+        let arguments =
+            ColorTilesArgs { bits, ranks, colors, debris_bits, any_debris, left, left_count, wanted, width, height };
+        recording.dispatch(&self.color_tiles, groups_for(left.len(), 1), &arguments);
+        self.record_bands(recording, buffers)?;
+        let sites = buffers.pixels.view().cast::<u32>();
+        let arguments = MarkDebrisArgs { colors, sites, left, left_count, debris_bits, any_debris, width, height };
+        recording.dispatch_indirect(&self.mark_debris, buffers.groups(Planned::Tiles)?, &arguments);
         Ok(())
     }
 
-    /// Finds debris and recolors it, as [`reference::debris`](crate::reference::debris) and
-    /// [`reference::recolor`](crate::reference::recolor) do.
+    /// Colors the tiles that are left.
+    fn record_bands(&self, recording: &mut Recording, buffers: &Buffers) -> Result<(), Error> {
+        let [width, height] = buffers.size;
+        let (bits, ranks, colors) = (buffers.site_bits.view(), buffers.site_ranks.view(), buffers.colors.view());
+        let (left, left_count, wanted) = (buffers.left.view(), buffers.word(Word::Left)?, buffers.wanted.view());
+        let (nearest, entries) = (buffers.a.view(), buffers.b.view());
+        let (ends, live, starts) = (buffers.ends.view(), buffers.live.view(), buffers.starts.view());
+        let (rows, columns) = (self.tuning.rows, self.tuning.columns);
+        let (bands, stacks) = (height.div_ceil(rows), width.div_ceil(columns));
+        let fills = width.div_ceil(2) as usize * bands as usize;
+        let arguments = PlanBandsArgs {
+            left_count,
+            groups: buffers.all_groups()?,
+            column_groups: ends.len().div_ceil(WORKGROUP as usize) as u32,
+            fill_groups: fills.div_ceil(WORKGROUP as usize) as u32,
+            stack_groups: height.div_ceil(self.tuning.row_lanes) * stacks,
+            merge_groups: height.div_ceil(ROWS),
+        };
+        recording.dispatch(&self.plan_bands, [1, 1, 1], &arguments);
+        let arguments = ColumnEndsArgs { bits, ends, width, height, band: rows };
+        recording.dispatch_indirect(&self.column_ends, buffers.groups(Planned::ColumnEnds)?, &arguments);
+        let arguments = ColumnFillArgs { bits, ends, wanted, nearest, width, height, band: rows };
+        recording.dispatch_indirect(&self.column_fill, buffers.groups(Planned::ColumnFill)?, &arguments);
+        let arguments = RowStacksArgs { nearest, wanted, entries, live, width, height };
+        recording.dispatch_indirect(&self.row_stacks, buffers.groups(Planned::RowStacks)?, &arguments);
+        let arguments = RowMergeArgs { nearest, wanted, entries, live, starts, width, height, band: columns };
+        recording.dispatch_indirect(&self.row_merge, buffers.groups(Planned::RowMerge)?, &arguments);
+        let arguments = ColorPixelsArgs {
+            bits,
+            ranks,
+            nearest,
+            entries,
+            live,
+            starts,
+            left,
+            left_count,
+            colors,
+            width,
+            height,
+            band: columns,
+        };
+        recording.dispatch_indirect(&self.color_pixels, buffers.groups(Planned::Tiles)?, &arguments);
+        Ok(())
+    }
+
+    /// Finds the rest of the debris and recolors it, as [`reference::debris`](crate::reference::debris) and
+    /// [`reference::recolor`](crate::reference::recolor) do. Follows [`Stage::record_color`].
     ///
     /// # Errors
     ///
     /// None that its arguments can cause.
     pub fn record_repair(&self, recording: &mut Recording, buffers: &Buffers) -> Result<(), Error> {
-        self.record_debris(recording, buffers)?;
-        self.record_recolor(recording, buffers)
-    }
-
-    /// The first half of [`Stage::record_repair`]: debris loses its color and is listed, ascending.
-    ///
-    /// # Errors
-    ///
-    /// None that its arguments can cause.
-    pub fn record_debris(&self, recording: &mut Recording, buffers: &Buffers) -> Result<(), Error> {
         let [width, height] = buffers.size;
-        let pixel_count = width as usize * height as usize;
+        let (count, unfinished) = (buffers.word(Word::Debris)?, buffers.word(Word::Unfinished)?);
         let (colors, sites) = (buffers.colors.view(), buffers.pixels.view().cast::<u32>());
-        let (state, debris, candidates) = (buffers.a.view(), buffers.b.view(), buffers.c.view());
-        let (total, marked) = (buffers.word(Word::Debris)?, buffers.word(Word::Marked)?);
-        let count = buffers.word(Word::Candidates)?;
-        let (groups, rounds) = (buffers.groups()?, buffers.word(Word::DebrisRounds)?);
-
-        recording.fill(buffers.counts.slice(Word::Debris as usize..buffers.counts.len())?, 0);
-        let arguments = MarkDebrisArgs { colors, sites, state, debris, total, marked, width, height };
-        recording.dispatch(&self.mark_debris, groups_for(pixel_count, WORKGROUP), &arguments);
-        // Each round but the last drops a pixel.
-        let bound = pixel_count as u32 + 1;
-        recording.repeat("finding debris", marked, bound, BATCH, |round| {
-            let arguments =
-                AdvanceRoundArgs { counter: marked, groups, zeroed: count, rounds: Some(rounds), items: WORKGROUP };
-            round.dispatch(&self.advance_round, [1, 1, 1], &arguments);
-            let arguments = DropDebrisArgs { colors, state, debris, total, marked, candidates, count, width, height };
-            round.dispatch_indirect(&self.drop_debris, groups, &arguments);
-            let arguments = AdvanceRoundArgs { counter: count, groups, zeroed: marked, rounds: None, items: WORKGROUP };
-            round.dispatch(&self.advance_round, [1, 1, 1], &arguments);
-            let arguments =
-                CheckDebrisArgs { colors, sites, state, debris, total, marked, candidates, count, width, height };
-            round.dispatch_indirect(&self.check_debris, groups, &arguments);
-        });
-        buffers.compact_pixels.record(recording, pixel_count, state, None, buffers.debris.view(), total);
-        Ok(())
-    }
-
-    /// The second half of [`Stage::record_repair`].
-    ///
-    /// # Errors
-    ///
-    /// None that its arguments can cause.
-    pub fn record_recolor(&self, recording: &mut Recording, buffers: &Buffers) -> Result<(), Error> {
-        let [width, height] = buffers.size;
-        let (colors, sites) = (buffers.colors.view(), buffers.pixels.view().cast::<u32>());
-        let (state, found, debris) = (buffers.a.view(), buffers.b.view(), buffers.debris.view());
-        let (count, again) = (buffers.word(Word::Debris)?, buffers.word(Word::Again)?);
-        let (groups, rounds) = (buffers.groups()?, buffers.word(Word::RecolorRounds)?);
-        recording.copy(count, again);
-        // m pixels are settled after m (m + 1) rounds.
+        let (list, other_list, debris_bits) = (buffers.a.view(), buffers.b.view(), buffers.debris_bits()?);
+        let (listed_bits, other_bits) = (buffers.bits_of_debris(1)?, buffers.bits_of_debris(2)?);
+        let first_count = buffers.word(Word::Progress)?;
+        let any_debris = buffers.word(Word::AnyDebris)?;
+        let words = debris_bits.len() as u32;
+        let arguments = ListDebrisArgs { any_debris, debris_bits, colors, list, count, first_count, words };
+        recording.dispatch(&self.list_debris, groups_for(words as usize, WORKGROUP), &arguments);
+        let arguments = SpreadDebrisArgs { colors, sites, list, debris_bits, count, first_count, width, height };
+        recording.dispatch(&self.spread_debris, WIDE, &arguments);
+        let arguments = RepairArgs {
+            colors,
+            sites,
+            list,
+            other_list,
+            debris_bits,
+            listed_bits,
+            other_bits,
+            count,
+            progress: buffers.progress()?,
+            counted: count,
+            progressed: buffers.progress()?,
+            unfinished,
+            width,
+            height,
+            recolors: 0,
+        };
+        recording.dispatch(&self.repair, [1, 1, 1], &arguments);
+        // Most work is in the first two turns, which all workgroups share.
+        let (phase, once, twice) =
+            (buffers.word(Word::Phase)?, buffers.word(Word::ListedOnce)?, buffers.word(Word::Listed)?);
+        let turn = RecolorDebrisArgs {
+            colors,
+            sites,
+            list,
+            count,
+            next_list: other_list,
+            next_count: once,
+            debris_bits,
+            listed_bits,
+            next_bits: other_bits,
+            phase,
+            width,
+            height,
+        };
+        recording.dispatch(&self.recolor_debris, WIDE, &turn);
+        let turn = RecolorDebrisArgs {
+            list: other_list,
+            count: once,
+            next_list: list,
+            next_count: twice,
+            listed_bits: other_bits,
+            next_bits: listed_bits,
+            ..turn
+        };
+        recording.dispatch(&self.recolor_debris, WIDE, &turn);
+        // Each round that finds debris finds a pixel; m pixels are settled after m (m + 1) rounds.
         let pixel_count = width * height;
-        let bound = pixel_count.saturating_mul(pixel_count.saturating_add(1)).saturating_add(1);
-        recording.repeat("recoloring debris", again, bound, BATCH, |round| {
-            let arguments =
-                AdvanceRoundArgs { counter: again, groups, zeroed: again, rounds: Some(rounds), items: WORKGROUP };
-            round.dispatch(&self.advance_round, [1, 1, 1], &arguments);
-            let arguments = FindColorArgs { colors, sites, debris, found, count, width, height };
-            round.dispatch_indirect(&self.find_color, groups, &arguments);
-            let arguments = TakeColorArgs { colors, state, debris, found, count, again, width, height };
-            round.dispatch_indirect(&self.take_color, groups, &arguments);
+        let bound = pixel_count.saturating_mul(pixel_count.saturating_add(2)).saturating_add(1);
+        let arguments = RepairArgs { recolors: 1, ..arguments };
+        recording.repeat_ahead("repairing debris", unfinished, bound, 1, 1, |round| {
+            round.dispatch(&self.repair, [1, 1, 1], &arguments);
         });
         Ok(())
     }

@@ -2,57 +2,86 @@
 
 use super::debris::has_closer;
 use super::recolor::best_candidate;
-use crate::order::neighbors;
-use crate::{Diagram, GridMapping, Sites, UNCOLORED};
+use crate::order::{neighbors, squared_distance};
+use crate::{Diagram, GridMapping, Sites, UNCOLORED, VoronoiError};
 use glam::DVec2;
 
-/// In a grid or a column: no site, no owner.
+/// No point.
 pub const NONE: u32 = u32::MAX;
 
-fn index_of([x, y]: [u16; 2], width: u32) -> usize {
-    usize::from(y) * width as usize + usize::from(x)
+/// Pixels of a tile, along x.
+pub const TILE_WIDTH: u32 = 64;
+/// Pixels of a tile, along y.
+pub const TILE_HEIGHT: u32 = 62;
+/// In a column: no row with a site.
+pub const NO_ROW: u32 = 0xffff;
+
+/// The word and the bit of a pixel in a grid of bits.
+fn bit_of(pixel: [u16; 2], width: u32) -> (usize, u32) {
+    (usize::from(pixel[1]) * width.div_ceil(32) as usize + usize::from(pixel[0] / 32), u32::from(pixel[0] % 32))
 }
 
-/// The pixel of each point, and the lowest index that each pixel of the grid has.
-pub fn map_points(points: &[DVec2], mapping: &GridMapping) -> (Vec<[u16; 2]>, Vec<u32>) {
-    let [width, height] = mapping.size();
-    let pixels: Vec<[u16; 2]> = points.iter().map(|&p| mapping.pixel(p).map(|x| x as u16)).collect();
-    let mut owner = vec![NONE; width as usize * height as usize];
-    for (point, &pixel) in pixels.iter().enumerate() {
-        let owner = &mut owner[index_of(pixel, width)];
-        *owner = (*owner).min(point as u32);
+/// A grid of bits, a row of whole words for each row of pixels, with those of some pixels set.
+pub fn bits_of(pixels: &[[u16; 2]], [width, height]: [u32; 2]) -> Vec<u32> {
+    let mut bits = vec![0; (width.div_ceil(32) * height) as usize];
+    for &pixel in pixels {
+        let (word, bit) = bit_of(pixel, width);
+        bits[word] |= 1 << bit;
     }
-    (pixels, owner)
+    bits
 }
 
-/// A one for each owned pixel, and one for each point that does not own its pixel; zeros else.
-pub fn elect_sites(pixels: &[[u16; 2]], owner: &[u32], width: u32) -> (Vec<u32>, Vec<u32>) {
-    let owned = owner.iter().map(|&owner| u32::from(owner != NONE)).collect();
-    let lost = |(point, &pixel): (usize, &[u16; 2])| u32::from(owner[index_of(pixel, width)] != point as u32);
-    (owned, pixels.iter().enumerate().map(lost).collect())
+fn number_of(bits: &[u32], ranks: &[u32], pixel: [u16; 2], width: u32) -> u32 {
+    let (word, bit) = bit_of(pixel, width);
+    ranks[word] + (bits[word] & ((1 << bit) - 1)).count_ones()
 }
 
-/// Puts each site, and its pixel, at its number.
-pub fn number_sites(
-    pixels: &[[u16; 2]],
-    owner: &[u32],
-    number: &[u32],
-    width: u32,
-    order: &mut [u32],
-    order_pixels: &mut [[u16; 2]],
-) {
+fn numbers_of_bits(words: &[u32]) -> impl Iterator<Item = u32> {
+    (0..32 * words.len() as u32).filter(|&i| words[i as usize / 32] >> (i % 32) & 1 != 0)
+}
+
+/// The pixel of each point, and a bit for each pixel that has one.
+pub fn map_points(points: &[DVec2], mapping: &GridMapping) -> (Vec<[u16; 2]>, Vec<u32>) {
+    let pixels: Vec<[u16; 2]> = points.iter().map(|&p| mapping.pixel(p).map(|x| x as u16)).collect();
+    let bits = bits_of(&pixels, mapping.size());
+    (pixels, bits)
+}
+
+/// How many bits each word has.
+pub fn count_bits(words: &[u32]) -> Vec<u32> {
+    words.iter().map(|word| word.count_ones()).collect()
+}
+
+/// For each pixel that has points, in order, the lowest index, as many as there are points and NONE behind; and a bit for each
+/// point that is not among them.
+pub fn elect_sites(pixels: &[[u16; 2]], bits: &[u32], ranks: &[u32], width: u32) -> (Vec<u32>, Vec<u32>) {
+    let (mut order, mut lost) = (vec![NONE; pixels.len()], vec![0; pixels.len().div_ceil(32)]);
     for (point, &pixel) in pixels.iter().enumerate() {
-        let index = index_of(pixel, width);
-        if owner[index] == point as u32 {
-            order[number[index] as usize] = point as u32;
-            order_pixels[number[index] as usize] = pixel;
+        let owner = &mut order[number_of(bits, ranks, pixel, width) as usize];
+        if *owner == NONE {
+            *owner = point as u32;
+        } else {
+            lost[point / 32] |= 1 << (point % 32);
         }
     }
+    (order, lost)
 }
 
-/// The index of the pixel of each missing point.
-pub fn missing_keys(pixels: &[[u16; 2]], missing: &[u32], width: u32) -> Vec<u32> {
-    missing.iter().map(|&point| index_of(pixels[point as usize], width) as u32).collect()
+/// The pixels whose bits are set, in order.
+pub fn list_sites(bits: &[u32], width: u32) -> Vec<[u16; 2]> {
+    let padded = width.div_ceil(32) * 32;
+    numbers_of_bits(bits).map(|i| [(i % padded) as u16, (i / padded) as u16]).collect()
+}
+
+/// The points whose bits are set, in order, and the number of the site in the pixel of each.
+pub fn list_missing(
+    lost: &[u32],
+    pixels: &[[u16; 2]],
+    bits: &[u32],
+    ranks: &[u32],
+    width: u32,
+) -> (Vec<u32>, Vec<u32>) {
+    numbers_of_bits(lost).map(|i| (i, number_of(bits, ranks, pixels[i as usize], width))).unzip()
 }
 
 /// Puts the missing points, and their pixels, behind the sites.
@@ -69,19 +98,80 @@ pub fn number_missing(
     }
 }
 
-/// The number of each site at its pixel.
-pub fn place_sites(sites: &[[u16; 2]], width: u32, grid: &mut [u32]) {
-    for (site, &pixel) in sites.iter().enumerate() {
-        grid[index_of(pixel, width)] = site as u32;
+/// What [`color_tiles`] gives.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Tiles {
+    /// The color of each pixel, [`UNCOLORED`] in tiles that are left.
+    pub colors: Vec<u32>,
+    /// A bit for each pixel of the others that has no closer neighbor of its color.
+    pub debris_bits: Vec<u32>,
+    /// The tiles that are left, ascending.
+    pub left: Vec<u32>,
+    /// Whether there are any in each row of tiles.
+    pub wanted: Vec<u32>,
+}
+
+/// Colors the tiles in which, and next to which, no pixel is as far as `radius + 1` from its site.
+pub fn color_tiles(sites: &Sites, colored: &Diagram, radius: u32) -> Tiles {
+    let [width, height] = sites.size;
+    let near = |index: usize| {
+        let site = sites.pixels[colored.colors[index] as usize];
+        squared_distance(colored.pixel(index), site) < (radius + 1) * (radius + 1)
+    };
+    let mut tiles = Tiles {
+        colors: vec![UNCOLORED; colored.colors.len()],
+        debris_bits: vec![0; colored.colors.len().div_ceil(32)],
+        left: Vec::new(),
+        wanted: Vec::new(),
+    };
+    for y in (0..height).step_by(TILE_HEIGHT as usize) {
+        tiles.wanted.push(0);
+        for x in (0..width).step_by(TILE_WIDTH as usize) {
+            let tile = y / TILE_HEIGHT * width.div_ceil(TILE_WIDTH) + x / TILE_WIDTH;
+            let rows = y.saturating_sub(1)..height.min(y + TILE_HEIGHT + 1);
+            let columns = x.saturating_sub(1)..width.min(x + TILE_WIDTH + 1);
+            let mut around = rows.flat_map(|y| columns.clone().map(move |x| (y * width + x) as usize));
+            if !around.all(near) {
+                tiles.left.push(tile);
+                tiles.wanted[(y / TILE_HEIGHT) as usize] = 1;
+                continue;
+            }
+            for index in pixels_of_tile(tile, sites.size) {
+                tiles.colors[index] = colored.colors[index];
+                if !has_closer(colored, sites, index) {
+                    tiles.debris_bits[index / 32] |= 1 << (index % 32);
+                }
+            }
+        }
     }
+    tiles
+}
+
+/// The pixels of a tile.
+pub fn pixels_of_tile(tile: u32, [width, height]: [u32; 2]) -> impl Iterator<Item = usize> {
+    let across = width.div_ceil(TILE_WIDTH);
+    let (x, y) = (tile % across * TILE_WIDTH, tile / across * TILE_HEIGHT);
+    let columns = x..width.min(x + TILE_WIDTH);
+    (y..height.min(y + TILE_HEIGHT)).flat_map(move |y| columns.clone().map(move |x| (y * width + x) as usize))
+}
+
+/// Sizes of dispatches: none if no tile is left, else as many workgroups as wanted, and one for each tile.
+pub fn plan_bands(left: u32, groups: [u32; 4]) -> [[u32; 3]; 5] {
+    let sizes = if left == 0 { [0; 5] } else { [groups[0], groups[1], groups[2], groups[3], left] };
+    sizes.map(|size| polder_vulkan::groups_for(size as usize, 1))
+}
+
+fn has_site(bits: &[u32], [x, y]: [u32; 2], width: u32) -> bool {
+    let (word, bit) = bit_of([x as u16, y as u16], width);
+    bits[word] >> bit & 1 != 0
 }
 
 /// For each band of rows and each column the first row with a site (lower half word) and the last (upper).
-pub fn column_ends(grid: &[u32], [width, height]: [u32; 2], band: u32) -> Vec<u32> {
+pub fn column_ends(bits: &[u32], [width, height]: [u32; 2], band: u32) -> Vec<u32> {
     let mut ends = Vec::new();
     for from in (0..height).step_by(band as usize) {
         for x in 0..width {
-            let mut rows = (from..height.min(from + band)).filter(|y| grid[(y * width + x) as usize] != NONE);
+            let mut rows = (from..height.min(from + band)).filter(|&y| has_site(bits, [x, y], width));
             let first = rows.next();
             let last = rows.next_back().or(first);
             ends.push(last.unwrap_or(0xffff) << 16 | first.unwrap_or(0xffff));
@@ -90,17 +180,17 @@ pub fn column_ends(grid: &[u32], [width, height]: [u32; 2], band: u32) -> Vec<u3
     ends
 }
 
-/// For each pixel the row of the nearest site in its column, the lower one of two.
-pub fn column_fill(grid: &[u32], [width, height]: [u32; 2]) -> Vec<u32> {
-    let mut nearest = vec![NONE; grid.len()];
+/// For each pixel the row of the nearest site in its column, the lower one of two, or [`NO_ROW`].
+pub fn column_fill(bits: &[u32], [width, height]: [u32; 2]) -> Vec<u32> {
+    let mut nearest = vec![NO_ROW; (width * height) as usize];
     for x in 0..width {
-        let rows: Vec<u32> = (0..height).filter(|y| grid[(y * width + x) as usize] != NONE).collect();
+        let rows: Vec<u32> = (0..height).filter(|&y| has_site(bits, [x, y], width)).collect();
         let mut place = 0;
         for y in 0..height {
             while place + 1 < rows.len() && rows[place + 1].abs_diff(y) < rows[place].abs_diff(y) {
                 place += 1;
             }
-            nearest[(y * width + x) as usize] = rows.get(place).copied().unwrap_or(NONE);
+            nearest[(y * width + x) as usize] = rows.get(place).copied().unwrap_or(NO_ROW);
         }
     }
     nearest
@@ -109,7 +199,7 @@ pub fn column_fill(grid: &[u32], [width, height]: [u32; 2]) -> Vec<u32> {
 /// The columns, of those given, whose nearest sites win pixels of a row, each with the first pixel that it wins: by
 /// comparing all.
 fn winners(row: &[u32], y: u32, columns: &[u32]) -> Vec<(u32, u32)> {
-    let columns: Vec<u32> = columns.iter().copied().filter(|&x| row[x as usize] != NONE).collect();
+    let columns: Vec<u32> = columns.iter().copied().filter(|&x| row[x as usize] != NO_ROW).collect();
     let mut winners: Vec<(u32, u32)> = Vec::new();
     for pixel in 0..row.len() as u32 {
         let distance = |&x: &u32| {
@@ -185,17 +275,20 @@ pub fn row_merge(
     starts
 }
 
-/// Each pixel takes the site that its row's stacks have for it.
+/// Each pixel of some tiles takes the site that its row's stacks have for it; other pixels get none.
 pub fn color_pixels(
-    grid: &[u32],
+    sites: &Sites,
     nearest: &[u32],
     entries: &[u32],
     live: &[u32],
-    [width, height]: [u32; 2],
+    left: &[u32],
     band: u32,
 ) -> Vec<u32> {
+    let [width, height] = sites.size;
+    let bits = bits_of(&sites.pixels[..sites.count], sites.size);
+    let (ranks, _) = polder_vulkan::reference::exclusive_scan(&count_bits(&bits));
     let bands = width.div_ceil(band);
-    let mut colors = vec![UNCOLORED; grid.len()];
+    let mut all = vec![UNCOLORED; nearest.len()];
     for y in 0..height {
         let row = y * width;
         for b in 0..bands {
@@ -203,59 +296,72 @@ pub fn color_pixels(
             for k in word & 0xff..word >> 8 & 0xff {
                 let entry = entries[(row + b * band + k) as usize];
                 let column = entry & 0xffff;
-                let site = grid[(nearest[(row + column) as usize] * width + column) as usize];
-                colors[(row + (entry >> 16)) as usize..(row + width) as usize].fill(site);
+                let pixel = [column as u16, nearest[(row + column) as usize] as u16];
+                all[(row + (entry >> 16)) as usize..(row + width) as usize]
+                    .fill(number_of(&bits, &ranks, pixel, width));
             }
         }
+    }
+    let mut colors = vec![UNCOLORED; all.len()];
+    for index in left.iter().flat_map(|&tile| pixels_of_tile(tile, sites.size)) {
+        colors[index] = all[index];
     }
     colors
 }
 
-/// The pixels that have no closer neighbor of their own color.
-pub fn mark_debris(diagram: &Diagram, sites: &Sites) -> Vec<u32> {
-    let all: Vec<u32> = (0..diagram.colors.len() as u32).collect();
-    check_debris(diagram, sites, &all)
-}
-
-/// Takes the color from the marked pixels; returns those neighbors, in order, that have kept the same color.
-pub fn drop_debris(diagram: &mut Diagram, marked: &[u32]) -> Vec<u32> {
-    let mut candidates = Vec::new();
-    for &index in marked {
-        let color = diagram.colors[index as usize];
-        let around = neighbors(diagram, diagram.pixel(index as usize)).map(|p| diagram.index(p));
-        candidates.extend(around.filter(|&i| diagram.colors[i] == color).map(|i| i as u32));
-    }
-    marked.iter().for_each(|&index| diagram.colors[index as usize] = UNCOLORED);
-    candidates.sort_unstable();
-    candidates.dedup();
-    candidates.retain(|&index| diagram.colors[index as usize] != UNCOLORED);
-    candidates
-}
-
-/// Those of the candidates that have no closer neighbor of their own color.
-pub fn check_debris(diagram: &Diagram, sites: &Sites, candidates: &[u32]) -> Vec<u32> {
-    candidates.iter().copied().filter(|&index| !has_closer(diagram, sites, index as usize)).collect()
-}
-
-/// Workgroups for so many items, of which one takes `items`.
-pub fn advance_round(count: u32, items: u32) -> [u32; 3] {
-    polder_vulkan::groups_for(count as usize, items)
-}
-
-/// The best color on offer to each debris pixel.
-pub fn find_color(diagram: &Diagram, sites: &Sites) -> Vec<u32> {
-    diagram.debris.iter().map(|&index| best_candidate(diagram, sites, index as usize)).collect()
-}
-
-/// All debris takes what it found; whether a pixel changed that has debris around it.
-pub fn take_color(diagram: &mut Diagram, found: &[u32]) -> bool {
-    let mut again = false;
-    for (i, &color) in found.iter().enumerate() {
-        let index = diagram.debris[i] as usize;
-        if std::mem::replace(&mut diagram.colors[index], color) != color {
-            let is_debris = |p: [u16; 2]| diagram.debris.binary_search(&(diagram.index(p) as u32)).is_ok();
-            again |= neighbors(diagram, diagram.pixel(index)).any(is_debris);
+/// A bit for each pixel of some tiles that has no closer neighbor of its own color.
+pub fn mark_debris(diagram: &Diagram, sites: &Sites, left: &[u32]) -> Vec<u32> {
+    let mut bits = vec![0; diagram.colors.len().div_ceil(32)];
+    for index in left.iter().flat_map(|&tile| pixels_of_tile(tile, sites.size)) {
+        if !has_closer(diagram, sites, index) {
+            bits[index / 32] |= 1 << (index % 32);
         }
     }
-    again
+    bits
+}
+
+/// The pixels whose bits are set, ascending.
+pub fn list_debris(bits: &[u32]) -> Vec<u32> {
+    numbers_of_bits(bits).collect()
+}
+
+/// Those neighbors of some pixels without color that have lost their last closer neighbor of their own color, ascending.
+pub fn spread_debris(diagram: &Diagram, sites: &Sites, dropped: &[u32]) -> Vec<u32> {
+    let around = dropped.iter().flat_map(|&index| neighbors(diagram, diagram.pixel(index as usize)));
+    let mut found: Vec<u32> = around
+        .map(|pixel| diagram.index(pixel))
+        .filter(|&index| diagram.colors[index] != UNCOLORED && !has_closer(diagram, sites, index))
+        .map(|index| index as u32)
+        .collect();
+    found.sort_unstable();
+    found.dedup();
+    found
+}
+
+/// All pixels of a list take the best color on offer, one after the other or at once: repeated over the debris until nothing
+/// changes it leads to the same colors. One after the other, here; returns the debris around those that changed, ascending.
+pub fn recolor_debris(diagram: &mut Diagram, sites: &Sites, list: &[u32]) -> Vec<u32> {
+    let mut next = Vec::new();
+    for &index in list {
+        let color = best_candidate(diagram, sites, index as usize);
+        if std::mem::replace(&mut diagram.colors[index as usize], color) != color {
+            let around = neighbors(diagram, diagram.pixel(index as usize)).map(|pixel| diagram.index(pixel) as u32);
+            next.extend(around.filter(|index| diagram.debris.binary_search(index).is_ok()));
+        }
+    }
+    next.sort_unstable();
+    next.dedup();
+    next
+}
+
+/// Finds all debris and recolors it. Returns the rounds in which some was found, as [`debris`](super::debris) counts them
+/// but without the last, which finds none.
+///
+/// # Errors
+///
+/// Those of [`debris`](super::debris) and [`recolor`](super::recolor).
+pub fn repair(diagram: &mut Diagram, sites: &Sites) -> Result<u64, VoronoiError> {
+    let rounds = super::debris(diagram, sites)?;
+    super::recolor(diagram, sites)?;
+    Ok(rounds - 1)
 }

@@ -42,7 +42,7 @@ pub fn diagram(points: &[DVec2], options: &Options) -> Result<Output, VoronoiErr
     let sites = map(points, &mapping)?;
     let mut diagram = color(&sites)?;
     let debris_rounds = debris(&mut diagram, &sites)?;
-    let recolor_rounds = recolor(&mut diagram, &sites)?;
+    recolor(&mut diagram, &sites)?;
     let counts = Counts {
         points: points.len() as u64,
         pixels: diagram.colors.len() as u64,
@@ -50,7 +50,6 @@ pub fn diagram(points: &[DVec2], options: &Options) -> Result<Output, VoronoiErr
         missing: sites.missing() as u64,
         debris: diagram.debris.len() as u64,
         debris_rounds,
-        recolor_rounds,
     };
     Ok(Output { mapping, sites, diagram, counts })
 }

@@ -1,0 +1,33 @@
+// Mapping, 6 of 7: the missing points in the order that they came in, and what they are to be sorted by: the number of the
+// site in their pixel.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "ranks.glsl"
+
+layout(push_constant, std430) uniform Args {
+    ReadU32 lost;
+    ReadU32 lost_ranks;
+    ReadU32 pixels;
+    ReadU32 bits;
+    ReadU32 ranks;
+    WriteU32 missing;
+    WriteU32 keys;
+    uint width;
+    uint count; // words of lost
+};
+
+void main() {
+    uint word = item_index();
+    if (word >= count) {
+        return;
+    }
+    uint to = lost_ranks.at[word];
+    uint left = lost.at[word];
+    while (left != 0u) {
+        uint point = word * 32u + uint(findLSB(left));
+        missing.at[to] = point;
+        keys.at[to] = number_of(bits, ranks, pixels.at[point], pitch_of(width));
+        to++;
+        left &= left - 1u;
+    }
+}
