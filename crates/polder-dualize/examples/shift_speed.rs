@@ -57,17 +57,12 @@ fn measure(device: &Device, count: usize, check: bool) -> Result<(), Failed> {
     let order = engine.download_vec(diagram.order())?;
     let all_pixels = engine.download_vec(pixels)?;
     let site_count = engine.download_vec(sites)?[0] as usize;
-    let corners: Vec<DVec2> = all_pixels.iter().map(|p| DVec2::from(p.map(f64::from))).collect();
-    let at_pixels = Buffer::new(device, "pixel positions", count)?;
-    engine.upload(at_pixels.view(), &corners)?;
 
     let flip = polder_flip::gpu::Stage::new(device)?;
     let (flip_buffers, tally) = (flip.buffers(mesh.capacity())?, Tally::new(device)?);
     let mut before = Recording::new(device);
     dual.record(&mut before, input, output, &dual_buffers)?;
-    before.copy(at_pixels.view(), mesh.positions());
     flip.record_start(&mut before, &flip_buffers);
-    flip.record_close_hull(&mut before, &mesh, &flip_buffers, None, None, &tally)?;
 
     let stage = shift::Stage::new(device, Arithmetic::of(device)?)?;
     let buffers = stage.buffers(count)?;

@@ -273,7 +273,7 @@ impl Shader for PinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "fbc2fdcce9c6c58b94c6988b26f5105108d6266dceef5a904a6602d6ee00b657",
+        source_hash: "63e97176cb1ec138f64c729e4b5b1e5e8fe5dd85441c2db6053dbdee072b6d8c",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -363,7 +363,7 @@ impl Shader for PinTriangles {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "3f0a7cfe1927e130f5915dd9512a18a53393058f81250f66bd926e6d89726379",
+        source_hash: "9a3c4bce0d40a3cd1c22938cc2bf914e0e092ce21d276525f7e097c19b51eff5",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -551,7 +551,7 @@ impl Shader for TakeoutCut {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "aa7bf5b680b4aab5fe19d649900d5e191b087910b7ce212c3b2fc16dfad8a4fd",
+        source_hash: "6c3ecbb7eed320a9bedbfa9e9272e5db95a6b1d90497334f09877bbfd211d660",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -882,7 +882,7 @@ impl Shader for UnpinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "2f72ff9be3d1a715cc99c5f5c7427970f19d950c398baf140c875737a77efee4",
+        source_hash: "7fbd47b21da4a600db9e22b43b7940b07ba42befcd7e22ef78219c0cfda1fc8f",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
