@@ -5,8 +5,8 @@
 mod vulkan_support;
 
 use polder_vulkan::kernels::*;
-use polder_vulkan::{Buffer, Kernel, groups_for, reference};
-use vulkan_support::{Gpu, wide, words};
+use polder_vulkan::{Buffer, DeviceOptions, Engine, Kernel, RunOptions, groups_for, reference};
+use vulkan_support::{Gpu, options, wide, words};
 
 const WORKGROUP: usize = 256;
 const TILE: usize = 16 * WORKGROUP;
@@ -283,4 +283,33 @@ fn self_test_f64() {
             assert!(expected.to_bits() == found.to_bits() || (expected.is_nan() && found.is_nan()), "{a:e}, {b:e}");
         }
     }
+}
+
+/// Of buffers that are there and of those that are gone; and what lies beside them is whole.
+#[test]
+fn writes_past_the_end_are_told() {
+    let gpu = Gpu::with(&DeviceOptions { guarded: true, ..options() });
+    let mut engine = Engine::new(&gpu.device).unwrap();
+    let kernel = Kernel::<FillWords>::new(&gpu.device, &[]).unwrap();
+    let buffers: Vec<Buffer<u32>> =
+        ["left", "middle", "right"].map(|name| Buffer::new(&gpu.device, name, 64).unwrap()).into();
+    let mut fill = |buffer: &Buffer<u32>, count| {
+        let mut recording = gpu.recording();
+        let to = buffer.view();
+        recording.dispatch(&kernel, [1, 1, 1], &FillWordsArgs { to, value: 3, count });
+        engine.run(&recording, &RunOptions::default()).unwrap();
+    };
+    buffers.iter().for_each(|buffer| fill(buffer, 64));
+    assert_eq!(gpu.device.overruns(), Vec::<String>::new());
+    fill(&buffers[1], 70);
+    let told = ["buffer `middle` of 256 bytes: written 0 bytes behind its end"];
+    assert_eq!(gpu.device.overruns(), told);
+    for buffer in [&buffers[0], &buffers[2]] {
+        assert_eq!(engine.download_vec(buffer.view()).unwrap(), [3; 64]);
+    }
+    let device = gpu.device.clone();
+    drop(buffers);
+    assert_eq!(device.overruns(), told);
+    // Dropped as such, a device of the tests would fail them.
+    std::mem::forget(gpu);
 }

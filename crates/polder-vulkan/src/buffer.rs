@@ -51,7 +51,13 @@ fn allocate(device: &Arc<DeviceInner>, name: &'static str, bytes: u64) -> Result
     // SAFETY: the buffer has memory and was made for its address to be taken.
     let address = unsafe { device.raw.get_buffer_device_address(&info) };
     let id = NEXT_ID.fetch_add(1, Ordering::Relaxed);
-    Ok(Arc::new(BufferInner { name, id, address, memory, device: Arc::clone(device) }))
+    let made = Arc::new(BufferInner { name, id, address, memory, device: Arc::clone(device) });
+    if made.memory.guard > 0 {
+        let mut guarded = device.guarded();
+        guarded.retain(|known| known.strong_count() > 0);
+        guarded.push(Arc::downgrade(&made));
+    }
+    Ok(made)
 }
 
 fn bytes_of<T>(len: usize) -> u64 {
@@ -103,7 +109,7 @@ impl<T: Pod> Buffer<T> {
 
     /// All elements.
     pub fn view(&self) -> View<'_, T> {
-        View { buffer: &self.inner, start: 0, len: self.len, of: PhantomData }
+        View { buffer: &self.inner, start: self.inner.memory.guard, len: self.len, of: PhantomData }
     }
 
     /// Some elements. The first must lie at a multiple of [`VIEW_ALIGN`] bytes.

@@ -1,5 +1,6 @@
 //! A device: opened here, or lent by a caller.
 
+use crate::buffer::BufferInner;
 use crate::cache::{CacheFolder, PipelineCache};
 use crate::error::Called;
 use crate::faults::Faults;
@@ -12,7 +13,7 @@ use crate::{Error, Selection};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
 /// How to open a device.
 #[derive(Debug, Clone, Default)]
@@ -25,6 +26,9 @@ pub struct DeviceOptions {
     pub memory_cap: Option<u64>,
     /// Where compiled pipelines are kept.
     pub cache: CacheFolder,
+    /// Whether every buffer stands between guard zones of 16 KiB, in memory that the host sees, so that
+    /// [`Device::overruns`] can tell which kernels wrote past an end. For tests: it is slow on a GPU.
+    pub guarded: bool,
 }
 
 /// A device, queue and, if wanted, allocator that a caller owns and lends.
@@ -59,6 +63,7 @@ pub(crate) struct DeviceInner {
     pub(crate) pipelines: Pipelines,
     pub(crate) faults: Faults,
     pub(crate) self_test: OnceLock<SelfTest>,
+    guarded: Mutex<Vec<Weak<BufferInner>>>,
     lost: AtomicBool,
     owned: bool,
     pub(crate) instance: Instance,
@@ -119,7 +124,18 @@ impl Device {
         drop(alone);
         // SAFETY: one queue of this family was asked for.
         let queue = unsafe { raw.get_device_queue(family, 0) };
-        Device::build(instance.clone(), info, raw, queue, family, None, options.memory_cap, &options.cache, true)
+        Device::build(
+            instance.clone(),
+            info,
+            raw,
+            queue,
+            family,
+            None,
+            options.memory_cap,
+            &options.cache,
+            true,
+            options.guarded,
+        )
     }
 
     /// Computes on a device that the caller owns; nothing of it is destroyed here.
@@ -139,7 +155,7 @@ impl Device {
         info.features.retain(|feature| Feature::REQUIRED.contains(feature) || lent.optional.contains(feature));
         info.family = Some(lent.family);
         let Lent { device, queue, family, allocator, memory_cap, cache, .. } = lent;
-        Device::build(instance, info, device, queue, family, allocator, memory_cap, &cache, false)
+        Device::build(instance, info, device, queue, family, allocator, memory_cap, &cache, false, false)
     }
 
     #[expect(clippy::too_many_arguments, reason = "one place that puts everything together")]
@@ -153,6 +169,7 @@ impl Device {
         memory_cap: Option<u64>,
         cache: &CacheFolder,
         owned: bool,
+        guarded: bool,
     ) -> Result<Self, Error> {
         let destroy = |raw: &ash::Device| {
             if owned {
@@ -185,11 +202,12 @@ impl Device {
             raw,
             queue: Mutex::new(queue),
             family,
-            memory: Memory::new(allocator, memory_cap),
+            memory: Memory::new(allocator, memory_cap, guarded),
             cache,
             pipelines: Pipelines::default(),
             faults: Faults::default(),
             self_test: OnceLock::new(),
+            guarded: Mutex::default(),
             lost: AtomicBool::new(false),
             owned,
             instance,
@@ -227,6 +245,15 @@ impl Device {
         &self.inner.faults
     }
 
+    /// Writes past an end of a buffer, of those that are there and those that were, if the device was opened with
+    /// [`DeviceOptions::guarded`]; those of more than 16 KiB past it are not seen.
+    pub fn overruns(&self) -> Vec<String> {
+        let mut all = self.inner.memory.overruns();
+        let live: Vec<_> = self.inner.guarded().iter().filter_map(Weak::upgrade).collect();
+        all.extend(live.iter().filter_map(|buffer| buffer.memory.overrun()));
+        all
+    }
+
     /// What the validation layer has said; empty without it.
     pub fn validation_messages(&self) -> Vec<String> {
         self.inner.instance.messages()
@@ -244,6 +271,10 @@ impl Device {
 }
 
 impl DeviceInner {
+    pub(crate) fn guarded(&self) -> MutexGuard<'_, Vec<Weak<BufferInner>>> {
+        self.guarded.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
     pub(crate) fn queue(&self) -> MutexGuard<'_, vk::Queue> {
         self.queue.lock().unwrap_or_else(PoisonError::into_inner)
     }

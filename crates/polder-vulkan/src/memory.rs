@@ -5,8 +5,13 @@ use crate::device::{Device, DeviceInner};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme, Allocator};
 use gpu_allocator::{AllocationError, MemoryLocation};
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// Bytes of a guard zone, and what is in it.
+const GUARD: u64 = 16 << 10;
+const PATTERN: u8 = 0xa5;
 
 pub(crate) struct Memory {
     /// Until the device goes: the allocator frees its blocks before that.
@@ -16,6 +21,10 @@ pub(crate) struct Memory {
     peak: AtomicU64,
     /// The largest piece that the driver gave.
     given: AtomicU64,
+    /// Whether buffers stand between guard zones.
+    guarded: bool,
+    /// Writes into guard zones of buffers that are gone.
+    overruns: Mutex<Vec<String>>,
 }
 
 /// Bytes of device memory that buffers of one device hold, staging included.
@@ -28,13 +37,15 @@ pub struct MemoryUse {
 }
 
 impl Memory {
-    pub(crate) fn new(allocator: Arc<Mutex<Allocator>>, cap: Option<u64>) -> Self {
+    pub(crate) fn new(allocator: Arc<Mutex<Allocator>>, cap: Option<u64>, guarded: bool) -> Self {
         Memory {
             allocator: Some(allocator),
             cap,
             used: AtomicU64::new(0),
             peak: AtomicU64::new(0),
             given: AtomicU64::new(0),
+            guarded,
+            overruns: Mutex::default(),
         }
     }
 
@@ -47,6 +58,11 @@ impl Memory {
         Some(work(&mut allocator.lock().unwrap_or_else(PoisonError::into_inner)))
     }
 
+    /// Writes into guard zones of buffers that are gone.
+    pub(crate) fn overruns(&self) -> Vec<String> {
+        self.overruns.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
     pub(crate) fn usage(&self) -> MemoryUse {
         MemoryUse { used: self.used.load(Ordering::Relaxed), peak: self.peak.load(Ordering::Relaxed) }
     }
@@ -56,6 +72,9 @@ impl Memory {
 pub(crate) struct Allocated {
     pub(crate) buffer: vk::Buffer,
     pub(crate) bytes: u64,
+    /// Bytes before the first that is meant for use, and behind the last.
+    pub(crate) guard: u64,
+    name: &'static str,
     pub(crate) allocation: Option<Allocation>,
     device: Arc<DeviceInner>,
 }
@@ -80,14 +99,18 @@ impl Allocated {
         if device.faults.allocation_fails() || memory.cap.is_some_and(|cap| used.saturating_add(bytes) > cap) {
             return Err(refused());
         }
-        let info = vk::BufferCreateInfo::default().size(bytes).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
+        // Guard zones are looked at by the host.
+        let guarded = memory.guarded && location == MemoryLocation::GpuOnly;
+        let (guard, location) = if guarded { (GUARD, MemoryLocation::CpuToGpu) } else { (0, location) };
+        let size = bytes + 2 * guard;
+        let info = vk::BufferCreateInfo::default().size(size).usage(usage).sharing_mode(vk::SharingMode::EXCLUSIVE);
         // SAFETY: the device is alive, the description valid: its size is not zero and within the limit.
         let buffer = unsafe { device.raw.create_buffer(&info, None) }.map_err(|_| refused())?;
         // SAFETY: the buffer was made from this device.
         let requirements = unsafe { device.raw.get_buffer_memory_requirements(buffer) };
         // Larger ones some drivers give all the same.
         let promised = requirements.size <= limits.allocation_bytes;
-        let mut made = Allocated { buffer, bytes, allocation: None, device: Arc::clone(device) };
+        let mut made = Allocated { buffer, bytes, guard, name, allocation: None, device: Arc::clone(device) };
         let description = AllocationCreateDesc {
             name,
             requirements,
@@ -110,12 +133,40 @@ impl Allocated {
         let now = memory.used.fetch_add(bytes, Ordering::Relaxed) + bytes;
         memory.peak.fetch_max(now, Ordering::Relaxed);
         bound.map_err(|_| refused())?;
+        for zone in made.zones() {
+            let mapped = made.allocation.as_mut().and_then(Allocation::mapped_slice_mut);
+            if let Some(zone) = mapped.and_then(|mapped| mapped.get_mut(zone)) {
+                zone.fill(PATTERN);
+            }
+        }
         Ok(made)
+    }
+
+    /// The guard zones: before the first byte, and behind the last.
+    fn zones(&self) -> [Range<usize>; 2] {
+        let (guard, bytes) = (self.guard as usize, self.bytes as usize);
+        [0..guard, guard + bytes..2 * guard + bytes]
+    }
+
+    /// What was written into a guard zone, in words.
+    pub(crate) fn overrun(&self) -> Option<String> {
+        let mapped = self.allocation.as_ref()?.mapped_slice()?;
+        let [before, behind] = self.zones().map(|zone| mapped.get(zone).unwrap_or_default());
+        let written = |byte: &u8| *byte != PATTERN;
+        let (name, bytes) = (self.name, self.bytes);
+        if let Some(place) = behind.iter().position(written) {
+            return Some(format!("buffer `{name}` of {bytes} bytes: written {place} bytes behind its end"));
+        }
+        let place = before.len() - before.iter().rposition(written)?;
+        Some(format!("buffer `{name}` of {bytes} bytes: written {place} bytes before its start"))
     }
 }
 
 impl Drop for Allocated {
     fn drop(&mut self) {
+        if let Some(overrun) = self.overrun().filter(|_| self.guard > 0) {
+            self.device.memory.overruns.lock().unwrap_or_else(PoisonError::into_inner).push(overrun);
+        }
         // SAFETY: made from this device; recordings and engines hold what is in flight alive, so it is in no use.
         unsafe { self.device.raw.destroy_buffer(self.buffer, None) };
         if let Some(allocation) = self.allocation.take() {

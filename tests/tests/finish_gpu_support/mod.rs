@@ -29,6 +29,7 @@ pub(crate) fn with_device(test: impl FnOnce(&mut Shared)) {
     });
     test(shared);
     assert_eq!(shared.gpu.device.validation_messages(), Vec::<String>::new());
+    assert_eq!(shared.gpu.device.overruns(), Vec::<String>::new());
 }
 
 /// What the step takes.

@@ -1,5 +1,6 @@
 //! A device for a test: the one that `POLDER_DEVICE` names, watched by the validation layer (`POLDER_VALIDATION=0` does
-//! without, where there is none). Without a device the test fails; so it does when the layer says anything.
+//! without, where there is none). Without a device the test fails; so it does when the layer says anything, and when a
+//! kernel has written past the end of a buffer.
 #![allow(dead_code, clippy::unwrap_used, reason = "tests; each takes what it needs")]
 
 pub(crate) mod faults;
@@ -15,10 +16,13 @@ pub(crate) struct Gpu {
     pub(crate) engine: Engine,
 }
 
+/// Watched, and with guard zones around every buffer; or neither.
 pub(crate) fn options() -> DeviceOptions {
+    let watched = std::env::var("POLDER_VALIDATION").as_deref() != Ok("0");
     DeviceOptions {
         selection: Selection::Environment,
-        validation: std::env::var("POLDER_VALIDATION").as_deref() != Ok("0"),
+        validation: watched,
+        guarded: watched,
         memory_cap: None,
         cache: CacheFolder::Off,
     }
@@ -57,6 +61,7 @@ impl Drop for Gpu {
     fn drop(&mut self) {
         if !std::thread::panicking() {
             assert_eq!(self.device.validation_messages(), Vec::<String>::new());
+            assert_eq!(self.device.overruns(), Vec::<String>::new());
         }
     }
 }
