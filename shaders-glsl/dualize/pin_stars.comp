@@ -24,8 +24,8 @@ layout(push_constant, std430) uniform Args {
 uint first;
 uint last;
 
-bool is_fresh(uint v) {
-    uint place = state.at[v] ^ PINNED;
+bool is_fresh(uint word) {
+    uint place = word ^ PINNED;
     return place >= first && place < last;
 }
 
@@ -33,38 +33,11 @@ uvec4 center(uint v) {
     return center_of(pixels.at[v], translation_x, translation_y, exponent, half_side);
 }
 
-uvec4 position(uint v, bool fresh) {
-    return fresh ? center(v) : positions.at[v];
-}
-
-void test(uint h, uint v, uvec4 at) {
-    uint u = destination(triangles, h);
-    uint w = apex(triangles, h);
-    if (max(u, w) >= DELETED) {
-        return;
-    }
-    bool fresh_u = is_fresh(u);
-    bool fresh_w = is_fresh(w);
-    // A triangle is tested from its lowest fresh corner.
-    if (fresh_u && u < v || fresh_w && w < v) {
-        return;
-    }
-    int sign = orient2d(at, position(u, fresh_u), position(w, fresh_w));
-    if (sign == 1) {
-        return;
-    }
-    if (sign == UNDECIDED) {
-        deferred.at[append(words, PIN_DEFERRED + round + 1u)] = h / 3u;
-        return;
-    }
-    for (uint k = 0u; k < 2u; k++) {
-        uint corner = k == 0u ? u : w;
-        uint spoke = k == 0u ? next_edge(h) : prev_edge(h);
-        if (pin(state, corner)) {
-            uint place = last + append(words, PIN_COUNTS + round + 1u);
-            pinned.at[place] = spoke;
-            state.at[corner] = PINNED | place;
-        }
+void pin_corner(uint v, uint spoke) {
+    if (pin(state, v)) {
+        uint place = last + append(words, PIN_COUNTS + round + 1u);
+        pinned.at[place] = spoke;
+        state.at[v] = PINNED | place;
     }
 }
 
@@ -74,16 +47,58 @@ void main() {
     for (uint i = first + first_item(); i < last; i += item_stride()) {
         uint start = pinned.at[i];
         uint v = origin(triangles, start);
+        uint u = destination(triangles, start);
         uvec4 at = center(v);
         positions.at[v] = at;
+        bool fresh_u = u < DELETED && is_fresh(state.at[u]);
+        uvec4 at_u = u >= DELETED ? at : fresh_u ? center(u) : positions.at[u];
         uint h = start;
         uint steps = 0u;
-        do {
-            test(h, v, at);
-            h = rotate_ccw(links, h);
-            steps++;
-        } while (h != start && steps < MOST_TRIANGLES_OF_STAR);
-        if (h != start) {
+        bool closed = false;
+        while (!closed && steps < MOST_TRIANGLES_OF_STAR) {
+            uint spokes[STEPS];
+            uint ends[STEPS]; // of the next spoke
+            bool fresh[STEPS];
+            uvec4 where[STEPS];
+            uint count = 0u;
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                spokes[k] = h;
+                ends[k] = apex(triangles, h);
+                if (!closed) {
+                    count++;
+                    h = rotate_ccw(links, h);
+                    closed = h == start;
+                }
+            }
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                uint w = ends[k] < DELETED ? ends[k] : v;
+                where[k] = positions.at[w];
+                fresh[k] = is_fresh(state.at[w]);
+            }
+            [[dont_unroll]] for (uint k = 0u; k < count; k++) {
+                uint w = ends[k];
+                uvec4 at_w = where[k];
+                if (fresh[k] && w < DELETED) {
+                    at_w = center(w);
+                }
+                // A triangle is tested from its lowest fresh corner.
+                bool elsewhere = fresh_u && u < v || fresh[k] && w < v;
+                if (max(u, w) < DELETED && !elsewhere) {
+                    int sign = orient2d(at, at_u, at_w);
+                    if (sign == UNDECIDED) {
+                        deferred.at[append(words, PIN_DEFERRED + round + 1u)] = spokes[k] / 3u;
+                    } else if (sign != 1) {
+                        pin_corner(u, next_edge(spokes[k]));
+                        pin_corner(w, prev_edge(spokes[k]));
+                    }
+                }
+                u = w;
+                at_u = at_w;
+                fresh_u = fresh[k];
+            }
+            steps += STEPS;
+        }
+        if (!closed) {
             note_broken(words, v);
         }
     }

@@ -6,6 +6,7 @@ layout(local_size_x_id = 0, local_size_x = 128) in;
 #include "groups.glsl"
 #include "mesh.glsl"
 
+#extension GL_KHR_shader_subgroup_arithmetic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 
 BUFFER(Points, uvec4, 16, );
@@ -64,6 +65,17 @@ uint append(U32 words, uint counter) {
     return subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(here);
 }
 
+// The first of so many places in a list, from any flow of control.
+uint reserve(U32 words, uint counter, uint count) {
+    uint before = subgroupExclusiveAdd(count);
+    uint total = subgroupAdd(count);
+    uint first = 0u;
+    if (subgroupElect()) {
+        first = atomicAdd(words.at[counter], total);
+    }
+    return subgroupBroadcastFirst(first) + before;
+}
+
 // How many sites were pinned before those of entry k.
 uint pinned_before(U32 words, uint k) {
     uint sum = words.at[PIN_BASE];
@@ -82,6 +94,10 @@ bool pin(U32 state, uint v) {
 bool is_waiting(uint state, uint round) {
     return (state & PINNED) != 0u && ((state & TRIED) == 0u || (state & ROUND) == round);
 }
+
+// A walk around a vertex is a chain of reads, each of which waits for the one before. So a walk takes a few steps before it
+// looks at what it has met, and all that it looks at comes at once.
+const uint STEPS = 8u;
 
 // No star of a mesh that a grid gives comes near this many triangles: more is a broken mesh.
 const uint MOST_TRIANGLES_OF_STAR = 1u << 20;

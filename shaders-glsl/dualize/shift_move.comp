@@ -13,12 +13,28 @@ layout(push_constant, std430) uniform Args {
     uint limit;    // room for sites
 };
 
+const uint AT_ONCE = 4u;
+
 void main() {
     uint site_count = min(sites.at[0], limit);
-    for (uint v = first_item(); v < count; v += item_stride()) {
-        positions.at[v] = points.at[order.at[v]];
-        if (v < site_count) {
-            state.at[v] = v;
+    uint stride = item_stride();
+    for (uint i = first_item(); i < count; i += AT_ONCE * stride) {
+        uint from[AT_ONCE];
+        uvec4 at[AT_ONCE];
+        [[unroll]] for (uint k = 0u; k < AT_ONCE; k++) {
+            from[k] = order.at[min(i + k * stride, count - 1u)];
+        }
+        [[unroll]] for (uint k = 0u; k < AT_ONCE; k++) {
+            at[k] = points.at[from[k]];
+        }
+        [[unroll]] for (uint k = 0u; k < AT_ONCE; k++) {
+            uint v = i + k * stride;
+            if (v < count) {
+                positions.at[v] = at[k];
+            }
+            if (v < site_count) {
+                state.at[v] = v;
+            }
         }
     }
 }

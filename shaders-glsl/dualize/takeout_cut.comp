@@ -1,5 +1,8 @@
 // Take out: cuts ears off the star of each site that goes, and merges what is left, or moves the site to infinity if it is
 // on the hull. Nothing outside the star is touched; where its outer edges have gone is noted.
+//
+// The filter takes small stars alone: it reads all of one, decides on all cuts, and then writes. What is left to the other
+// kernel is cut step by step in the mesh.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "takeout.glsl"
@@ -10,25 +13,184 @@ layout(push_constant, std430) uniform Args {
     U32 links;
     ReadPoints positions;
     U32 state;
-    U32 winners;  // half-edges to heirs; deferred ones: where to go on
-    U32 deferred;
+    U32 winners;  // half-edges to heirs
+    U32 deferred; // those that the other kernel takes
     U32 freed;    // two slots for each site
     U32 edge_of;
     OuterEdges edges;
     U32 words;
     uint round; // of the batch
-    uint again; // whether the deferred ones are to be decided
+    uint again; // whether the deferred ones are to be taken
 };
+
+bool is_decided_ear(uvec4 at, uvec4 a, uvec4 l, uvec4 b, out bool is_ear) {
+    // Both signs by one call: a l b and a b v.
+    int signs[2];
+    [[dont_unroll]] for (uint k = 0u; k < 2u; k++) {
+        signs[k] = orient2d(a, k == 0u ? l : b, k == 0u ? b : at);
+    }
+    is_ear = signs[0] == 1 && signs[1] != -1;
+    return !(signs[0] == UNDECIDED && signs[1] != -1 || signs[1] == UNDECIDED && signs[0] == 1);
+}
+
+void free_two(uint v, uint t, uint u) {
+    free_slot(triangles, links, t);
+    free_slot(triangles, links, u);
+    freed.at[2u * v] = t;
+    freed.at[2u * v + 1u] = u;
+}
+
+// The star of a site, in arrays.
+
+const uint MOST = 16u;
+
+uint spokes[MOST];
+uint ends[MOST];    // of spokes
+uvec4 where[MOST];  // the ends are
+uint across[MOST];  // the outer edge of each spoke's triangle
+uint places[MOST];  // of the triangle's first outer edge
+uint inside;        // bits of triangles whose outer edge by now is that of an ear
+// For each spoke four bits: the next and the previous one, and whose end it has.
+uint64_t following;
+uint64_t preceding;
+uint64_t end_of;
+
+uint bits(uint64_t of, uint k) {
+    return uint(of >> (4u * k)) & 15u;
+}
+
+void set_bits(inout uint64_t of, uint k, uint value) {
+    of = of & ~(15ul << (4u * k)) | uint64_t(value) << (4u * k);
+}
+
+void make_ring(uint degree) {
+    following = 0ul;
+    preceding = 0ul;
+    end_of = 0xfedcba9876543210ul;
+    for (uint k = 0u; k < degree; k++) {
+        set_bits(following, k, k + 1u == degree ? 0u : k + 1u);
+        set_bits(preceding, k, k == 0u ? degree - 1u : k - 1u);
+    }
+}
+
+// The spoke c now has the end of the one before, which leaves the ring.
+void drop_before(uint c) {
+    uint a = bits(preceding, c);
+    uint before = bits(preceding, a);
+    set_bits(end_of, c, bits(end_of, a));
+    set_bits(preceding, c, before);
+    set_bits(following, before, c);
+}
+
+// The outer edge of the triangle of spoke c goes to `to`.
+void place_edge(uint c, uint to) {
+    links.at[to] = across[c];
+    if ((inside >> c & 1u) != 0u) {
+        links.at[across[c]] = to;
+    } else {
+        places[c] = to;
+    }
+}
+
+// Cuts the star whose spokes and ends are in the arrays; or does nothing and returns false.
+bool cut_small(uint v, uint degree, uint ghost) {
+    uvec4 at = positions.at[v];
+    for (uint k = 0u; k < degree; k++) {
+        where[k] = positions.at[ends[k] < DELETED ? ends[k] : v];
+        across[k] = links.at[next_edge(spokes[k])];
+    }
+    make_ring(degree);
+    bool is_inner = ghost == NONE;
+    uint begin = is_inner ? 0u : bits(following, ghost);
+    uint64_t cuts = 0ul;
+    uint cut_count = 0u;
+    uint left = degree;
+    uint c = begin;
+    for (uint step = 0u; step < 4u * MOST; step++) {
+        uint a = bits(end_of, bits(preceding, c));
+        uint b = bits(end_of, bits(following, c));
+        if (is_inner ? left == 3u : b == ghost) {
+            break;
+        }
+        bool is_ear = false;
+        if (a != ghost && !is_decided_ear(at, where[a], where[bits(end_of, c)], where[b], is_ear)) {
+            return false;
+        }
+        if (is_ear) {
+            cuts |= uint64_t(c) << (4u * cut_count);
+            cut_count++;
+            drop_before(c);
+            left--;
+        } else {
+            c = bits(following, c);
+        }
+    }
+    if (is_inner && left != 3u) {
+        note_broken(words, v);
+        return true;
+    }
+
+    // Cut: the triangle before spoke c becomes an ear.
+    uint last = c;
+    make_ring(degree);
+    inside = 0u;
+    for (uint k = 0u; k < degree; k++) {
+        places[k] = next_edge(spokes[k]);
+    }
+    for (uint k = 0u; k < cut_count; k++) {
+        c = bits(cuts, k);
+        uint h = spokes[c];
+        uint g = prev_edge(spokes[bits(preceding, c)]);
+        triangles.at[prev_edge(g)] = ends[bits(end_of, bits(following, c))];
+        triangles.at[prev_edge(h)] = ends[bits(end_of, bits(preceding, c))];
+        place_edge(c, g);
+        across[c] = next_edge(g);
+        inside |= 1u << c;
+        link(links, next_edge(h), next_edge(g));
+        drop_before(c);
+        link(links, h, prev_edge(spokes[bits(preceding, c)]));
+    }
+
+    c = last;
+    uint h = spokes[c];
+    uint next = bits(following, c);
+    uint previous = bits(preceding, c);
+    if (is_inner) {
+        triangles.at[next_edge(h)] = ends[bits(end_of, previous)];
+        place_edge(next, prev_edge(h));
+        place_edge(previous, h);
+        free_two(v, spokes[next] / 3u, spokes[previous] / 3u);
+    } else {
+        uint first = bits(following, next);
+        uint spoke = first;
+        for (uint k = 0u; k < degree && spoke != c; k++) {
+            triangles.at[next_edge(spokes[spoke])] = GHOST;
+            spoke = bits(following, spoke);
+        }
+        place_edge(c, prev_edge(spokes[previous]));
+        place_edge(next, spokes[first]);
+        free_two(v, h / 3u, spokes[next] / 3u);
+    }
+    uint entry = reserve(words, OUT_EDGES + round, degree);
+    for (uint k = 0u; k < degree; k++) {
+        edges.at[entry + k] = uvec2(spokes[k] / 3u, places[k]);
+        edge_of.at[spokes[k] / 3u] = entry + k;
+    }
+    state.at[v] = ends[0];
+    return true;
+}
+
+// The star of a site, in the mesh.
 
 // The outer edge, or the edge of an ear, at `from` goes to `to`, in another triangle of the same star.
 void move_edge(uint from, uint to) {
-    uint across = links.at[from];
+    uint beyond = links.at[from];
     uint entry = edge_of.at[from / 3u];
-    links.at[to] = across;
+    links.at[to] = beyond;
     if (edges.at[entry].y == from) {
         edges.at[entry].y = to;
     } else {
-        links.at[across] = to;
+        links.at[beyond] = to;
     }
 }
 
@@ -41,13 +203,6 @@ void flip_spoke(uint h, uint g) {
     link(links, h, before);
     move_edge(h1, g);
     link(links, h1, g1);
-}
-
-void free_two(uint v, uint t, uint u) {
-    free_slot(triangles, links, t);
-    free_slot(triangles, links, u);
-    freed.at[2u * v] = t;
-    freed.at[2u * v + 1u] = u;
 }
 
 void merge(uint v, uint h) {
@@ -89,7 +244,7 @@ uint look_around(uint start, out uint to_ghost) {
 }
 
 void list_edges(uint start, uint degree) {
-    uint first = atomicAdd(words.at[OUT_EDGES + round], degree);
+    uint first = reserve(words, OUT_EDGES + round, degree);
     uint h = start;
     for (uint i = 0u; i < degree; i++) {
         edges.at[first + i] = uvec2(h / 3u, next_edge(h));
@@ -98,58 +253,64 @@ void list_edges(uint start, uint degree) {
     }
 }
 
+void cut_large(uint v, uint start) {
+    uint to_ghost;
+    uint left = look_around(start, to_ghost);
+    list_edges(start, left);
+    state.at[v] = destination(triangles, start);
+    uint h = to_ghost == NONE ? start : rotate_ccw(links, to_ghost);
+    uvec4 at = positions.at[v];
+    uint most = 4u * left;
+    for (uint step = 0u; step < most; step++) {
+        if (to_ghost == NONE && left == 3u) {
+            merge(v, h);
+            return;
+        }
+        uint b = apex(triangles, h);
+        if (b == GHOST) {
+            to_infinity(v, h);
+            return;
+        }
+        uint g = twin(links, h);
+        uint a = apex(triangles, g);
+        uint l = destination(triangles, h);
+        bool is_ear = false;
+        if (a != GHOST) {
+            is_decided_ear(at, positions.at[a], positions.at[l], positions.at[b], is_ear);
+        }
+        if (is_ear) {
+            flip_spoke(h, g);
+            left--;
+        } else {
+            h = rotate_ccw(links, h);
+        }
+    }
+    note_broken(words, v);
+}
+
 void main() {
     uint count = words.at[(again != 0u ? OUT_DEFERRED : OUT_WINNERS) + round];
     for (uint i = first_item(); i < count; i += item_stride()) {
-        uint h = again != 0u ? deferred.at[i] : winners.at[i];
-        uint v = origin(triangles, h);
-        uint to_ghost;
-        uint left = look_around(h, to_ghost);
-        if (again == 0u) {
-            list_edges(h, left);
-            state.at[v] = destination(triangles, h);
-            h = to_ghost == NONE ? h : rotate_ccw(links, to_ghost);
+        uint start = again != 0u ? deferred.at[i] : winners.at[i];
+        uint v = origin(triangles, start);
+        if (ARITHMETIC != FAST) {
+            cut_large(v, start);
+            continue;
         }
-        uvec4 at = positions.at[v];
-        uint most = 4u * left;
-        uint step = 0u;
-        for (; step < most; step++) {
-            if (to_ghost == NONE && left == 3u) {
-                merge(v, h);
-                break;
-            }
-            uint b = apex(triangles, h);
-            if (b == GHOST) {
-                to_infinity(v, h);
-                break;
-            }
-            uint g = twin(links, h);
-            uint a = apex(triangles, g);
-            bool is_ear = false;
-            if (a != GHOST) {
-                uvec4 at_a = positions.at[a];
-                uvec4 at_b = positions.at[b];
-                uvec4 at_l = positions.at[destination(triangles, h)];
-                // Both signs by one call: a l b and a b v.
-                int signs[2];
-                for (uint k = 0u; k < 2u; k++) {
-                    signs[k] = orient2d(at_a, k == 0u ? at_l : at_b, k == 0u ? at_b : at);
-                }
-                if (signs[0] == UNDECIDED && signs[1] != -1 || signs[1] == UNDECIDED && signs[0] == 1) {
-                    deferred.at[append(words, OUT_DEFERRED + round)] = h;
-                    break;
-                }
-                is_ear = signs[0] == 1 && signs[1] != -1;
-            }
-            if (is_ear) {
-                flip_spoke(h, g);
-                left--;
-            } else {
-                h = rotate_ccw(links, h);
-            }
+        uint degree = 0u;
+        uint ghost = NONE;
+        uint h = start;
+        do {
+            spokes[degree] = h;
+            ends[degree] = destination(triangles, h);
+            h = rotate_ccw(links, h);
+            degree++;
+        } while (h != start && degree < MOST);
+        for (uint k = 0u; k < degree; k++) {
+            ghost = ends[k] == GHOST ? k : ghost;
         }
-        if (step == most) {
-            note_broken(words, v);
+        if (h != start || !cut_small(v, degree, ghost)) {
+            deferred.at[append(words, OUT_DEFERRED + round)] = start;
         }
     }
 }

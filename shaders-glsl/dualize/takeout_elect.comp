@@ -32,26 +32,39 @@ void main() {
         uint to_heir = start;
         uint h = start;
         uint steps = 0u;
-        do {
-            uint u = destination(triangles, h);
-            if (u < DELETED) {
-                uint pinned = state.at[u] & PINNED;
-                if (pinned != 0u && priority(u) < mine) {
-                    beaten = true;
-                    break;
+        bool closed = false;
+        while (!closed && !beaten && steps < MOST_TRIANGLES_OF_STAR) {
+            uint spokes[STEPS];
+            uint ends[STEPS];
+            uint states[STEPS];
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                spokes[k] = h;
+                ends[k] = destination(triangles, h);
+                finite = finite || ends[k] < DELETED && apex(triangles, h) < DELETED;
+                if (!closed) {
+                    h = rotate_ccw(links, h);
+                    closed = h == start;
                 }
-                if ((pinned | u) < heir) {
-                    heir = pinned | u;
-                    to_heir = h;
-                }
-                finite = finite || apex(triangles, h) < DELETED;
             }
-            h = rotate_ccw(links, h);
-            steps++;
-        } while (h != start && steps < MOST_TRIANGLES_OF_STAR);
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                states[k] = state.at[ends[k] < DELETED ? ends[k] : v];
+            }
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                uint u = ends[k];
+                if (u < DELETED) {
+                    uint pinned = states[k] & PINNED;
+                    beaten = beaten || pinned != 0u && priority(u) < mine;
+                    if ((pinned | u) < heir) {
+                        heir = pinned | u;
+                        to_heir = spokes[k];
+                    }
+                }
+            }
+            steps += STEPS;
+        }
         if (beaten) {
             later.at[append(words, OUT_COUNTS + round + 1u)] = v;
-        } else if (h != start) {
+        } else if (!closed) {
             note_broken(words, v);
         } else if (!finite) {
             words.at[CHAIN] = round + 1u;

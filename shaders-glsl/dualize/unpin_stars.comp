@@ -33,28 +33,50 @@ void main() {
         bool beaten = false;
         bool stuck = false;
         bool open = false;
+        uint u = destination(triangles, start);
+        uvec4 at_u = positions.at[u < DELETED ? u : v];
         uint h = start;
         uint steps = 0u;
-        do {
-            uint u = destination(triangles, h);
-            uint w = apex(triangles, h);
-            if (u < DELETED && priority(u) < mine && is_waiting(state.at[u], stamp)) {
-                beaten = true;
-                break;
+        bool closed = false;
+        while (!closed && !beaten && steps < MOST_TRIANGLES_OF_STAR) {
+            uint ends[STEPS]; // of the next spoke
+            uint states[STEPS];
+            uvec4 where[STEPS];
+            uint count = 0u;
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                ends[k] = apex(triangles, h);
+                if (!closed) {
+                    count++;
+                    h = rotate_ccw(links, h);
+                    closed = h == start;
+                }
             }
-            if (!stuck && max(u, w) < DELETED) {
-                int sign = orient2d(at, positions.at[u], positions.at[w]);
-                open = open || sign == UNDECIDED;
-                stuck = sign != 1 && sign != UNDECIDED;
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                uint w = ends[k] < DELETED ? ends[k] : v;
+                states[k] = state.at[w];
+                where[k] = positions.at[w];
             }
-            h = rotate_ccw(links, h);
-            steps++;
-        } while (h != start && steps < MOST_TRIANGLES_OF_STAR);
+            // Each neighbor is the end of one spoke; what is behind the last one repeats the first.
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                beaten = beaten || ends[k] < DELETED && priority(ends[k]) < mine && is_waiting(states[k], stamp);
+            }
+            [[dont_unroll]] for (uint k = 0u; k < count && !beaten && !stuck; k++) {
+                uint w = ends[k];
+                if (max(u, w) < DELETED) {
+                    int sign = orient2d(at, at_u, where[k]);
+                    open = open || sign == UNDECIDED;
+                    stuck = sign != 1 && sign != UNDECIDED;
+                }
+                u = w;
+                at_u = where[k];
+            }
+            steps += STEPS;
+        }
         if (beaten) {
             later.at[append(words, UNPIN_COUNTS + round + 1u)] = start;
             continue;
         }
-        if (h != start) {
+        if (!closed) {
             note_broken(words, v);
         }
         if (open && !stuck) {

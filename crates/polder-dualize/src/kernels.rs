@@ -273,7 +273,7 @@ impl Shader for PinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "63e97176cb1ec138f64c729e4b5b1e5e8fe5dd85441c2db6053dbdee072b6d8c",
+        source_hash: "0275602f91e3109d8b03b0694f7b2150c67549f57afc99fe8b47e35943143546",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -358,12 +358,13 @@ impl Shader for PinTriangles {
         capabilities: &[
             "Float64",
             "GroupNonUniform",
+            "GroupNonUniformArithmetic",
             "GroupNonUniformBallot",
             "Int64",
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "9a3c4bce0d40a3cd1c22938cc2bf914e0e092ce21d276525f7e097c19b51eff5",
+        source_hash: "b287070da0e1a26901baab82e18de7c510d10c815531304cab51e2f88b810fdd",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -416,7 +417,7 @@ impl Shader for ShiftAdvance {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "76f29e614dcdc9702daff7dca0d683303b0959f6463ad5bbecb83ad43bc8be10",
+        source_hash: "810c93e5d9320da4eb464cf01dbdfa30c5853069e10fa4fb6021719e439c0c46",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -469,7 +470,7 @@ impl Shader for ShiftMove {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "4ec1036538f0d06fb57daa1bccd60a1491820c40440b133a192e705876728960",
+        source_hash: "2ae929c7dc3014a866f36b6420eb165b15bc8d0788b8e515065f6577bf1ed7af",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -486,6 +487,9 @@ impl Shader for ShiftMove {
 
 /// Take out: cuts ears off the star of each site that goes, and merges what is left, or moves the site to infinity if it is
 /// on the hull. Nothing outside the star is touched; where its outer edges have gone is noted.
+///
+/// The filter takes small stars alone: it reads all of one, decides on all cuts, and then writes. What is left to the other
+/// kernel is cut step by step in the mesh.
 #[derive(Debug, Clone, Copy)]
 pub enum TakeoutCut {}
 
@@ -546,12 +550,13 @@ impl Shader for TakeoutCut {
         capabilities: &[
             "Float64",
             "GroupNonUniform",
+            "GroupNonUniformArithmetic",
             "GroupNonUniformBallot",
             "Int64",
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "6c3ecbb7eed320a9bedbfa9e9272e5db95a6b1d90497334f09877bbfd211d660",
+        source_hash: "607ea773f56e154c3958115994dbd5de87ce11dcad8ed1649be59c47b572afa0",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -617,7 +622,7 @@ impl Shader for TakeoutElect {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "e1fa1e2a9945cd745291c5a3700cfc918c627565d32dd2c3df02605c0a8fef43",
+        source_hash: "648213b672afbfbec409ad33e61b67c604cc64c01b283a18b3ca4a57478e723b",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -685,7 +690,7 @@ impl Shader for TakeoutHeirs {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "83a0b1b350e47f4f791e07aa0ff56acaec30c079bbb7d35bc4e98cf7e35d1520",
+        source_hash: "8dc008f4e9a9f2042031d9a4d9867acc8909ccf6530ab33a1b3dfb8221ebac18",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -746,7 +751,7 @@ impl Shader for TakeoutLink {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "54ee2ff06567da60c59ac4578531b608eb7fd85bea78ca3e9f01f235d9a29c6c",
+        source_hash: "10bce510bd7f2a90967ab347a06d6425787bf172a3e58ff45ce573f7119fc6d3",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -799,7 +804,7 @@ impl Shader for UnpinFinish {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "f3f754b3187697427fc89b6f821d1a0d4b93b03a98d558bfd9034a323ff021b1",
+        source_hash: "b5162bfd6168d10b1c855cc8515703ea50d2564d9bab0f8a29eeb5127875390c",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -882,7 +887,7 @@ impl Shader for UnpinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "7fbd47b21da4a600db9e22b43b7940b07ba42befcd7e22ef78219c0cfda1fc8f",
+        source_hash: "199b0979044c25d8c2751faf6299a5ab89956f95a9b40cc4e9fac66ddbfe7ead",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

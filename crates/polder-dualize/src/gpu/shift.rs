@@ -28,11 +28,12 @@ use polder_vulkan::{Device, DeviceKind, Error, Estimate, Kernel, Recording, View
 pub use super::shift_buffers::{Buffers, Counts, Read};
 
 /// Rounds of a batch: even where two lists change places.
-pub(super) const PIN_ROUNDS: u32 = 5;
+pub(super) const PIN_ROUNDS: u32 = 4;
 pub(super) const UNPIN_ROUNDS: u32 = 10;
 pub(super) const OUT_ROUNDS: u32 = 6;
-/// Workgroups of a wide kernel, whose invocations stride over their items.
-const WIDE: u32 = 1056;
+/// Workgroups of a wide kernel, whose invocations stride over their items; and of one over what filters left open.
+const WIDE: u32 = 2112;
+const RARE: u32 = 132;
 const WIDE_ON_CPU: u32 = 16;
 
 /// What the stage takes beside the dualized mesh, all on the device.
@@ -66,6 +67,7 @@ pub struct Flips<'a> {
 pub struct Stage {
     pub(super) device: Device,
     pub(super) groups: [u32; 3],
+    pub(super) rare: [u32; 3],
     shift_move: Kernel<ShiftMove>,
     pin_triangles: Kernels<PinTriangles>,
     pin_stars: Kernels<PinStars>,
@@ -85,10 +87,11 @@ impl Stage {
     ///
     /// Those of the device.
     pub fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
-        let wide = if device.info().kind == DeviceKind::Cpu { WIDE_ON_CPU } else { WIDE };
+        let [wide, rare] = if device.info().kind == DeviceKind::Cpu { [WIDE_ON_CPU; 2] } else { [WIDE, RARE] };
         Ok(Self {
             device: device.clone(),
             groups: [wide, 1, 1],
+            rare: [rare, 1, 1],
             shift_move: Kernel::new(device, &[])?,
             pin_triangles: arithmetic.kernels(device, &[])?,
             pin_stars: arithmetic.kernels(device, &[])?,
@@ -188,7 +191,7 @@ impl Stage {
         let listed = PinTrianglesArgs { listed: Some(deferred), ..all };
         recording.dispatch(&self.pin_triangles.first, self.groups, &all);
         if let Some(rest) = &self.pin_triangles.rest {
-            recording.dispatch(rest, self.groups, &listed);
+            recording.dispatch(rest, self.rare, &listed);
         }
         let [translation_x, translation_y] = input.mapping.translation();
         let bound = buffers.sites as u32;
@@ -211,7 +214,7 @@ impl Stage {
                 };
                 body.dispatch(&self.pin_stars.first, self.groups, &arguments);
                 if let Some(rest) = &self.pin_triangles.rest {
-                    body.dispatch(rest, self.groups, &PinTrianglesArgs { entry: round + 1, ..listed });
+                    body.dispatch(rest, self.rare, &PinTrianglesArgs { entry: round + 1, ..listed });
                 }
             }
             self.record_advance(body, mesh, buffers, Row::Pin, PIN_ROUNDS);
@@ -234,7 +237,7 @@ impl Stage {
                 };
                 body.dispatch(&self.unpin_stars.first, self.groups, &arguments);
                 if let Some(rest) = &self.unpin_stars.rest {
-                    body.dispatch(rest, self.groups, &UnpinStarsArgs { again: 1, ..arguments });
+                    body.dispatch(rest, self.rare, &UnpinStarsArgs { again: 1, ..arguments });
                 }
             }
             self.record_advance(body, mesh, buffers, Row::Unpin, UNPIN_ROUNDS);

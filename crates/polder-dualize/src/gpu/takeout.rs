@@ -46,7 +46,7 @@ impl Stage {
                 };
                 body.dispatch(&self.cut.first, self.groups, &arguments);
                 if let Some(rest) = &self.cut.rest {
-                    body.dispatch(rest, self.groups, &TakeoutCutArgs { again: 1, ..arguments });
+                    body.dispatch(rest, self.rare, &TakeoutCutArgs { again: 1, ..arguments });
                 }
                 let arguments = TakeoutLinkArgs { triangles, links, state, edge_of, edges, words, round };
                 body.dispatch(&self.link, self.groups, &arguments);
