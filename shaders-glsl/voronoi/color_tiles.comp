@@ -32,11 +32,15 @@ const uint ROWS = TILE_HEIGHT + 2u;
 const uint WORDS = 6u;
 const uint NO_PIXEL = 0xffffu;
 
+// Words of four rows each, for step 3: so many an invocation.
+const uint FOURS = ROWS / 4u * COLUMNS;
+const uint ITEMS = (FOURS + WORKGROUP - 1u) / WORKGROUP;
+const uint IN_ROW = (ROWS / 4u + RADIUS / 2u) * COLUMNS;
+
 shared uint site_bits[(ROWS + 2u * RADIUS) * WORDS];
-// Four rows in a word: 32 + x, or 0 without a site.
-shared uint in_row[(ROWS / 4u + RADIUS / 2u) * COLUMNS];
-// Two rows in a word.
-shared uint nearest[ROWS / 2u * COLUMNS];
+// First what step 2 finds, four rows in a word: 32 + x, or 0 without a site. Then what step 3 finds, two rows in a word. How
+// many workgroups run at once depends on how little memory they share.
+shared uint found[IN_ROW > 2u * FOURS ? IN_ROW : 2u * FOURS];
 shared uint uncertain;
 
 // In column c of the tile and one around, with those that are 31 to either side.
@@ -72,7 +76,7 @@ bool found_all(uvec4 best, bvec4 asked, uint reach) {
 }
 
 uint nearest_at(uint c, uint row) {
-    return nearest[(row >> 1) * COLUMNS + c] >> 16u * (row & 1u) & 0xffffu;
+    return found[(row >> 1) * COLUMNS + c] >> 16u * (row & 1u) & 0xffffu;
 }
 
 // Whether a pixel has a neighbor with the same site, closer to it than it is.
@@ -116,42 +120,50 @@ void main() {
     barrier();
 
     // 2.
-    for (uint i = lane; i < (ROWS / 4u + RADIUS / 2u) * COLUMNS; i += WORKGROUP) {
+    for (uint i = lane; i < IN_ROW; i += WORKGROUP) {
         uint row = i / COLUMNS * 4u;
         uint c = i % COLUMNS;
-        in_row[i] = nearest_in_row(row, c) | nearest_in_row(row + 1u, c) << 8 | nearest_in_row(row + 2u, c) << 16
+        found[i] = nearest_in_row(row, c) | nearest_in_row(row + 1u, c) << 8 | nearest_in_row(row + 2u, c) << 16
             | nearest_in_row(row + 3u, c) << 24;
     }
     barrier();
 
     // 3.
-    for (uint i = lane; i < ROWS / 4u * COLUMNS; i += WORKGROUP) {
+    uvec2 kept[ITEMS];
+    [[unroll]] for (uint item = 0u; item < ITEMS; item++) {
+        uint i = min(lane + item * WORKGROUP, FOURS - 1u);
         uint c = i % COLUMNS;
         uint group = i / COLUMNS;
         uint y = y0 + group * 4u - 1u;
         bvec4 asked = lessThan(uvec4(y, y + 1u, y + 2u, y + 3u), uvec4(x0 + c - 1u < width ? height : 0u));
         uint at = i + RADIUS / 4u * COLUMNS;
         uvec4 best = uvec4(NONE);
-        improve(in_row[at], 0, best);
+        improve(found[at], 0, best);
         uint reach = 0u;
         if (RADIUS > 0u) {
-            improve(in_row[at - COLUMNS], -4, best);
-            improve(in_row[at + COLUMNS], 4, best);
+            improve(found[at - COLUMNS], -4, best);
+            improve(found[at + COLUMNS], 4, best);
             reach = 4u;
         }
-        bool found = found_all(best, asked, reach);
-        while (!found && reach < RADIUS) {
+        bool found_it = found_all(best, asked, reach);
+        while (!found_it && reach < RADIUS) {
             reach += 4u;
-            improve(in_row[at - reach / 4u * COLUMNS], -int(reach), best);
-            improve(in_row[at + reach / 4u * COLUMNS], int(reach), best);
-            found = found_all(best, asked, reach);
+            improve(found[at - reach / 4u * COLUMNS], -int(reach), best);
+            improve(found[at + reach / 4u * COLUMNS], int(reach), best);
+            found_it = found_all(best, asked, reach);
         }
-        if (!found) {
+        if (!found_it) {
             uncertain = 1u;
         }
-        uvec4 kept = mix(uvec4(NO_PIXEL), best & 0xfffu, asked);
-        nearest[2u * group * COLUMNS + c] = kept.x | kept.y << 16;
-        nearest[(2u * group + 1u) * COLUMNS + c] = kept.z | kept.w << 16;
+        uvec4 site = mix(uvec4(NO_PIXEL), best & 0xfffu, asked);
+        kept[item] = uvec2(site.x | site.y << 16, site.z | site.w << 16);
+    }
+    barrier();
+    [[unroll]] for (uint item = 0u; item < ITEMS; item++) {
+        uint i = min(lane + item * WORKGROUP, FOURS - 1u);
+        uint at = i / COLUMNS * 2u * COLUMNS + i % COLUMNS;
+        found[at] = kept[item].x;
+        found[at + COLUMNS] = kept[item].y;
     }
     barrier();
     if (uncertain != 0u) {

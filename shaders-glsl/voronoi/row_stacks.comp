@@ -1,6 +1,6 @@
 // Coloring, 5 of 8: for each row of each band of columns the stack of its proximate sites, those that are nearest to some
-// pixel of the whole row. A workgroup takes WORKGROUP rows of a band through shared memory, an invocation each. `live` holds
-// for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits.
+// pixel of the whole row. A workgroup takes WORKGROUP rows of a band, an invocation each, and keeps the stacks in shared memory.
+// `live` holds for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "row.glsl"
@@ -16,15 +16,10 @@ layout(push_constant, std430) uniform Args {
     uint height;
 };
 
-// Two columns in a word; an odd number of words in a row, so that all rows' words of a column lie in different banks.
-const uint PAIRS = (BAND / 2u + 1u) | 1u;
-shared uint rows_of[WORKGROUP * PAIRS];
+// How many workgroups run at once depends on how little memory they share, so rows are read where they lie: a lane takes all of
+// a sector after the other.
 shared uint stacks[WORKGROUP * (BAND + 1u)];
 shared uint counts[WORKGROUP];
-
-uint row_at(uint lane, uint k) {
-    return rows_of[lane * PAIRS + k / 2u] >> 16u * (k & 1u) & 0xffffu;
-}
 
 void main() {
     uint bands = (width + BAND - 1u) / BAND;
@@ -36,23 +31,15 @@ void main() {
     }
     uint lane = gl_LocalInvocationIndex;
     uint columns = min(BAND, width - from);
-    uint first_pair = from / 2u;
-    uint last_pair = (from + columns - 1u) / 2u;
     uint rows = min(WORKGROUP, height - y0);
-    for (uint i = lane; i < WORKGROUP * PAIRS; i += WORKGROUP) {
-        uint y = min(y0 + i / PAIRS, height - 1u);
-        rows_of[i] = nearest.at[y * pairs_of(width) + min(first_pair + i % PAIRS, last_pair)];
-    }
-    barrier();
     uint count = 0u;
     uint y = y0 + lane;
     if (y < height) {
         uint stack = lane * (BAND + 1u);
-        uint odd = from & 1u;
         ivec2 top = ivec2(0);
         uint top_from = 0u;
         for (uint k = 0u; k < columns; k++) {
-            uint row = row_at(lane, k + odd);
+            uint row = nearest_row(nearest, from + k, y, width);
             if (row == NO_ROW) {
                 continue;
             }
@@ -68,7 +55,7 @@ void main() {
                 if (count > 0u) {
                     uint entry = stacks[stack + count - 1u];
                     uint column = entry & 0xffffu;
-                    top = ivec2(column, int(row_at(lane, column - from + odd)) - int(y));
+                    top = ivec2(column, int(nearest_row(nearest, column, y, width)) - int(y));
                     top_from = entry >> 16;
                 }
             }

@@ -222,7 +222,7 @@ impl Shader for ColorTiles {
             Constant { name: "RADIUS", id: 1, default: 16 },
         ],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "9e55c93134b04e644cdae1b8fad6cf6de87c5d24be08c4b8cdf6e1f5bd231665",
+        source_hash: "0f2319b116f248822c5eb9d666717acbf089269557f84422051ca7bc706889dc",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1079,8 +1079,8 @@ impl Shader for RowMerge {
 }
 
 /// Coloring, 5 of 8: for each row of each band of columns the stack of its proximate sites, those that are nearest to some
-/// pixel of the whole row. A workgroup takes WORKGROUP rows of a band through shared memory, an invocation each. `live` holds
-/// for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits.
+/// pixel of the whole row. A workgroup takes WORKGROUP rows of a band, an invocation each, and keeps the stacks in shared memory.
+/// `live` holds for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits.
 #[derive(Debug, Clone, Copy)]
 pub enum RowStacks {}
 
@@ -1121,7 +1121,7 @@ impl Shader for RowStacks {
             Constant { name: "BAND", id: 1, default: 64 },
         ],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "a22ebc84e00f8ff98c26d2fe8ea9590b0473300cc6645809c4ec2c5737ab5daf",
+        source_hash: "fed9d9abedfb88faa905b82c92213b07d05dd26125ae7ec34ef7abe3ca8407e0",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
