@@ -13,21 +13,18 @@ layout(push_constant, std430) uniform Args {
     WriteU32 missing;
     WriteU32 keys;
     uint width;
-    uint count; // words of lost
+    uint count; // of points
 };
 
 void main() {
-    uint word = item_index();
-    if (word >= count) {
+    uint point = item_index();
+    if (point >= count) {
         return;
     }
-    uint to = lost_ranks.at[word];
-    uint left = lost.at[word];
-    while (left != 0u) {
-        uint point = word * 32u + uint(findLSB(left));
+    uint word = lost.at[point >> 5];
+    if ((word >> (point & 31u) & 1u) != 0u) {
+        uint to = lost_ranks.at[point >> 5] + uint(bitCount(word & below(point)));
         missing.at[to] = point;
         keys.at[to] = number_of(bits, ranks, pixels.at[point], pitch_of(width));
-        to++;
-        left &= left - 1u;
     }
 }

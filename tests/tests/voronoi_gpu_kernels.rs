@@ -195,9 +195,9 @@ fn list_missing() {
                 missing: missing.view(),
                 keys: keys.view(),
                 width,
-                count: ranked.lost.len() as u32,
+                count: points.len() as u32,
             };
-            run::<ListMissing>(gpu, ranked.lost.len(), &arguments);
+            run::<ListMissing>(gpu, points.len(), &arguments);
             let mut expected = kernels::list_missing(&ranked.lost, &ranked.pixels, &ranked.bits, &ranked.ranks, width);
             found += expected.0.len();
             expected.0.extend([7, 7]);

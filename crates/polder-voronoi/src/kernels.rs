@@ -545,7 +545,7 @@ impl Shader for ListMissing {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "7e31699a07e8a464e3c0469f0b6580156450febc5684251f250dfcc257bc9728",
+        source_hash: "88a19b55b84d352e6f350422743b792d8c32fe726c02d1b074ba78a2ca7b3657",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

@@ -88,9 +88,8 @@ impl Stage {
         recording.dispatch(&self.list_sites, groups_for(bits.len(), WORKGROUP), &arguments);
 
         self.record_ranks(recording, buffers, lost, lost_ranks, counter);
-        let words = lost.len() as u32;
-        let arguments = ListMissingArgs { lost, lost_ranks, pixels, bits, ranks, missing, keys, width, count: words };
-        recording.dispatch(&self.list_missing, groups_for(lost.len(), WORKGROUP), &arguments);
+        let arguments = ListMissingArgs { lost, lost_ranks, pixels, bits, ranks, missing, keys, width, count: limit };
+        recording.dispatch(&self.list_missing, groups, &arguments);
         let missing_count = Count::on_device(counter, count);
         let most_sites = count.min(width as usize * height as usize) as u32;
         buffers.sort.record(recording, missing_count, keys, Some(missing), 32 - (most_sites - 1).leading_zeros());
