@@ -1,5 +1,5 @@
 // Step 3 of a round, first half: of all that claim a triangle the least priority gets it, and who got both is flipped.
-// Outer links keep the names that they had before the round, until `relink_edges` renews them.
+// Outer links keep the names that they had before the round, until they are renewed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "rounds.glsl"
@@ -7,23 +7,25 @@
 layout(push_constant, std430) uniform Args {
     U32 triangles;
     U32 links;
-    U32 claims;
+    ReadU32 claims;
     U32 stamps;
     U32 illegal;
-    U32 edge_count;
-    MaybeReadU32 edges; // whose bits are cleared
-    MaybeU32 listed;
+    MaybeReadU32 edges; // the list that was tested, to be emptied
+    MaybeU32 edge_count;
+    MaybeU32 listed; // whose bits are cleared
     U32 words;
     U32 report;
-    uint limit;
+    uint limit; // edges that the list takes
+    uint least; // fewer illegal edges are left to another kernel
+    uint parity;
 };
 
 shared uint flips_of_group;
 
 void main() {
-    uint end = min(words.at[ILLEGAL_COUNT], limit);
-    uint taken = words.at[TAKEN_COUNT];
-    uint round = words.at[ROUND];
+    uint count = words.at[ILLEGAL_COUNT(parity)];
+    uint end = count >= least ? count : 0u;
+    uint round = words.at[ROUND] + 1u;
     if (gl_LocalInvocationIndex == 0u) {
         flips_of_group = 0u;
     }
@@ -31,16 +33,13 @@ void main() {
     uint flips = 0u;
     for (uint i = item_index(); i < end; i += item_stride()) {
         uint h = illegal.at[i];
-        if (flip_if_won(triangles, links, claims, stamps, round, h)) {
-            illegal.at[i] = h | WON;
-            flips++;
-        }
-    }
-    if (present(listed)) {
-        for (uint i = item_index(); i < taken; i += item_stride()) {
-            uint h = edges.at[i];
-            if (h != NONE) {
-                atomicAnd(listed.at[h >> 5], ~(1u << (h & 31u)));
+        uint mine = priority(h);
+        if (claims.at[h / 3u] == mine) {
+            uint g = links.at[h];
+            if (claims.at[g / 3u] == mine) {
+                flip_pair(triangles, links, stamps, round, h, g);
+                illegal.at[i] = h | WON;
+                flips++;
             }
         }
     }
@@ -51,12 +50,22 @@ void main() {
     if (gl_LocalInvocationIndex == 0u && flips_of_group != 0u) {
         add_wide(report, REPORT_FLIPS, flips_of_group);
     }
+    if (present(listed)) {
+        uint listed_end = min(words.at[LISTED_COUNT], limit);
+        for (uint i = item_index(); i < listed_end; i += item_stride()) {
+            uint h = edges.at[i];
+            if (h != NONE) {
+                atomicAnd(listed.at[h >> 5], ~(1u << (h & 31u)));
+            }
+        }
+    }
     if (item_index() == 0u) {
-        words.at[RELINK_COUNT] = end;
+        words.at[TAKEN_COUNT] = end;
+        words.at[ROUND_NOW] = round;
         words.at[DEFERRED_COUNT] = 0u;
-        if (taken != 0u) {
+        words.at[ANY_TESTED] = 0u;
+        if (present(edge_count)) {
             edge_count.at[0] = 0u;
-            report.at[REPORT_ROUNDS] += 1u;
         }
     }
 }

@@ -1,5 +1,6 @@
-// Whole rounds inside one workgroup, while few edges are active: as many as `most`, and fewer when an edge is left to do
-// nothing with, or too many. The same rounds as by the wide kernels.
+// Whole rounds inside one workgroup, from the claims of one to the claims of the next, while few edges are illegal: so many
+// rounds as are allowed, and fewer where nothing is left, or too much. The same rounds as by the wide kernels. The first
+// edges of a round's list lie in shared memory with their twins, the others in the lists of the wide kernels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define WORDS SharedU32
@@ -9,24 +10,28 @@ layout(push_constant, std430) uniform Args {
     SharedU32 triangles;
     SharedU32 links;
     ReadPoints positions;
-    SharedU32 edges;
-    SharedU32 edge_count;
-    MaybeWriteU32 also; // another list that edges handed on are appended to
-    MaybeU32 also_count;
-    SharedU32 illegal;
-    SharedU32 claims;
+    SharedU32 claims_0; // of even rounds
+    SharedU32 claims_1;
     SharedU32 stamps;
+    SharedU32 illegal_0;
+    SharedU32 illegal_1;
+    MaybeWriteU32 also; // a list that all edges handed on are appended to
+    MaybeU32 also_count;
     SharedU32 words;
     SharedU32 report;
+    uint also_limit;
     uint scope;
-    uint least; // so many active edges are left to other kernels
+    uint least; // so many illegal edges are left to other kernels, four times as many once it has begun
     uint most; // rounds
     uint most_tests;
-    uint also_limit;
 };
 
-shared uint illegal_count;
-shared uint next_count;
+// Edges in shared memory, of even and of odd rounds.
+const uint NEAR = 1024u;
+shared uint near_lower[2u * NEAR];
+shared uint near_upper[2u * NEAR];
+// Of the rounds after even and after odd ones.
+shared uint next_count[2];
 shared uint flips;
 shared uint tests;
 
@@ -37,14 +42,29 @@ void wait() {
 
 void main() {
     uint rank = gl_LocalInvocationIndex;
-    uint count = edge_count.at[0];
+    uint parity = words.at[ILLEGAL_COUNT(0u)] != 0u ? 0u : 1u;
+    uint count = words.at[ILLEGAL_COUNT(parity)];
     uint round = words.at[ROUND];
+    SharedU32 claims = claims_0;
+    SharedU32 next_claims = claims_1;
+    SharedU32 illegal = illegal_0;
+    SharedU32 next_illegal = illegal_1;
+    if (parity == 1u) {
+        claims = claims_1;
+        next_claims = claims_0;
+        illegal = illegal_1;
+        next_illegal = illegal_0;
+    }
+    for (uint i = rank; i < min(count, NEAR); i += WORKGROUP) {
+        uint h = illegal.at[i];
+        near_lower[parity * NEAR + i] = h;
+        near_upper[parity * NEAR + i] = links.at[h];
+    }
     if (rank == 0u) {
         flips = 0u;
         tests = 0u;
-        illegal_count = 0u;
     }
-    wait();
+    barrier();
     uint limit = least;
     uint rounds = 0u;
     uint taken = 0u;
@@ -53,54 +73,96 @@ void main() {
         rounds++;
         round++;
         taken += count;
+        if (rank == 0u) {
+            next_count[parity] = 0u;
+        }
         for (uint i = rank; i < count; i += WORKGROUP) {
-            uint h = edges.at[i];
-            if (scope == SCOPE_ALL || is_ghost_edge(triangles, h)) {
-                atomicAdd(tests, 1u);
-                if (verdict(triangles, links, positions, h) == ILLEGAL) {
-                    claim(claims, h, twin(links, h));
-                    illegal.at[atomicAdd(illegal_count, 1u)] = h;
-                }
-            }
-        }
-        wait();
-        uint end = illegal_count;
-        if (rank == 0u) {
-            next_count = 0u;
-        }
-        for (uint i = rank; i < end; i += WORKGROUP) {
-            uint h = illegal.at[i];
-            if (flip_if_won(triangles, links, claims, stamps, round, h)) {
-                illegal.at[i] = h | WON;
+            bool near = i < NEAR;
+            uint h = near ? near_lower[parity * NEAR + i] : illegal.at[i];
+            uint mine = priority(h);
+            // Whoever does not have the first triangle may read what another changes, and does not look at it.
+            uint g = near ? near_upper[parity * NEAR + i] : links.at[h] & HALF_EDGE;
+            bool first = claims.at[h / 3u] == mine;
+            bool second = claims.at[g / 3u] == mine;
+            if (first && second) {
+                flip_pair(triangles, links, stamps, round, h, g);
                 atomicAdd(flips, 1u);
-            }
-        }
-        wait();
-        if (rank == 0u) {
-            illegal_count = 0u;
-        }
-        for (uint i = rank; i < end; i += WORKGROUP) {
-            uint h = illegal.at[i];
-            Handed handed;
-            if ((h & WON) != 0u) {
-                handed = relink(triangles, links, claims, stamps, round, h & HALF_EDGE);
-            } else {
-                handed = leave(links, claims, stamps, round, h);
-            }
-            uint place = atomicAdd(next_count, handed.count);
-            uint behind = present(also) && handed.count != 0u ? atomicAdd(also_count.at[0], handed.count) : 0u;
-            for (uint k = 0u; k < handed.count; k++) {
-                edges.at[place + k] = handed.edges[k];
-                if (present(also) && behind + k < also_limit) {
-                    also.at[behind + k] = handed.edges[k];
+                if (near) {
+                    near_lower[parity * NEAR + i] = h | WON;
+                } else {
+                    illegal.at[i] = h | WON;
                 }
             }
         }
         wait();
-        count = next_count;
+        for (uint i = rank; i < 4u * count; i += WORKGROUP) {
+            bool near = (i >> 2) < NEAR;
+            uint h = near ? near_lower[parity * NEAR + (i >> 2)] : illegal.at[i >> 2];
+            uint k = i & 3u;
+            uint found = LEGAL;
+            Handed handed;
+            handed.some = false;
+            if ((h & WON) != 0u) {
+                h &= HALF_EDGE;
+                uint g = near ? near_upper[parity * NEAR + (i >> 2)] : prev_edge(links.at[next_edge(h)]);
+                if (k < 2u) {
+                    claims.at[(k == 0u ? h : g) / 3u] = NONE;
+                }
+                handed = renew(links, stamps, round, side_of(h, g, k));
+                if (handed.some) {
+                    uint b = origin(triangles, handed.side);
+                    uint c = destination(triangles, handed.side);
+                    if (scope == SCOPE_ALL || b == GHOST || c == GHOST) {
+                        atomicAdd(tests, 1u);
+                        if (handed.mark == 0u) {
+                            uint a = apex(triangles, handed.side);
+                            found = verdict(positions, a, b, c, apex(triangles, handed.outer));
+                        }
+                    }
+                }
+            } else if (k == 0u) {
+                handed = leave(links, claims, stamps, round, h);
+                if (handed.some) {
+                    atomicAdd(tests, 1u);
+                    found = ILLEGAL;
+                }
+            }
+            if (found == ILLEGAL) {
+                uint lower = min(handed.side, handed.outer);
+                uint upper = max(handed.side, handed.outer);
+                claim(next_claims, lower, upper);
+                uint place = atomicAdd(next_count[parity], 1u);
+                if (place < NEAR) {
+                    near_lower[(parity ^ 1u) * NEAR + place] = lower;
+                    near_upper[(parity ^ 1u) * NEAR + place] = upper;
+                } else {
+                    next_illegal.at[place] = lower;
+                }
+            }
+            if (present(also) && handed.some) {
+                uint place = atomicAdd(also_count.at[0], 1u);
+                if (place < also_limit) {
+                    also.at[place] = min(handed.side, handed.outer);
+                }
+            }
+        }
+        wait();
+        count = next_count[parity];
+        parity ^= 1u;
+        SharedU32 other = claims;
+        claims = next_claims;
+        next_claims = other;
+        other = illegal;
+        illegal = next_illegal;
+        next_illegal = other;
+    }
+    for (uint i = rank; i < min(count, NEAR); i += WORKGROUP) {
+        illegal.at[i] = near_lower[parity * NEAR + i];
     }
     if (rank == 0u) {
-        edge_count.at[0] = count;
+        words.at[ILLEGAL_COUNT(parity)] = count;
+        words.at[ILLEGAL_COUNT(parity ^ 1u)] = 0u;
+        words.at[PENDING_COUNT] = count;
         words.at[ROUND] = round;
         report.at[REPORT_ROUNDS] += rounds;
         add_wide(report, REPORT_FLIPS, flips);

@@ -6,54 +6,52 @@
 #include "workgroup_scan.glsl"
 
 layout(push_constant, std430) uniform Args {
-    U32 triangles;
     U32 links;
     U32 claims;
-    U32 stamps;
+    ReadU32 stamps;
     ReadU32 illegal;
     WriteU32 edges;
     U32 edge_count;
-    MaybeWriteU32 also; // another list that they are appended to
-    MaybeU32 also_count;
     U32 words;
-    uint also_limit;
+    uint limit; // edges that the list takes
+    uint parity;
 };
 
-shared uvec2 places;
+shared uint place;
 
 void main() {
-    uint end = words.at[RELINK_COUNT];
-    uint round = words.at[ROUND];
+    uint end = 4u * words.at[TAKEN_COUNT];
+    uint round = words.at[ROUND_NOW];
     if (item_index() == 0u) {
-        words.at[ILLEGAL_COUNT] = 0u;
-        words.at[TAKEN_COUNT] = 0u;
+        words.at[ILLEGAL_COUNT(parity)] = 0u;
+        words.at[ROUND] = round;
     }
     for (uint begin = group_index() * WORKGROUP; begin < end; begin += item_stride()) {
         uint i = begin + gl_LocalInvocationIndex;
         Handed handed;
-        handed.count = 0u;
+        handed.some = false;
         if (i < end) {
-            uint h = illegal.at[i];
+            uint h = illegal.at[i >> 2];
+            uint k = i & 3u;
             if ((h & WON) != 0u) {
-                handed = relink(triangles, links, claims, stamps, round, h & HALF_EDGE);
-            } else {
-                handed = leave(links, claims, stamps, round, h);
+                h &= HALF_EDGE;
+                uint g = prev_edge(links.at[next_edge(h)]);
+                if (k < 2u) {
+                    claims.at[(k == 0u ? h : g) / 3u] = NONE;
+                }
+                handed = renew(links, U32(stamps), round, side_of(h, g, k));
+            } else if (k == 0u) {
+                handed = leave(links, claims, U32(stamps), round, h);
             }
         }
         uint total;
-        uint before = sum_before(handed.count, total);
+        uint before = sum_before(uint(handed.some), total);
         if (gl_LocalInvocationIndex == 0u && total != 0u) {
-            places.x = atomicAdd(edge_count.at[0], total);
-            if (present(also)) {
-                places.y = atomicAdd(also_count.at[0], total);
-            }
+            place = atomicAdd(edge_count.at[0], total);
         }
         barrier();
-        for (uint k = 0u; k < handed.count; k++) {
-            edges.at[places.x + before + k] = handed.edges[k];
-            if (present(also) && places.y + before + k < also_limit) {
-                also.at[places.y + before + k] = handed.edges[k];
-            }
+        if (handed.some && place + before < limit) {
+            edges.at[place + before] = min(handed.side, handed.outer);
         }
     }
 }

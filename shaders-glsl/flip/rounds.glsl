@@ -14,15 +14,21 @@ BUFFER(MaybeU32, uint, 4, );
 #define WORDS U32
 #endif
 
-// The words that steer a round. Active edges that it takes: all, or none where it is another kernel's turn.
-const uint TAKEN_COUNT = 0u;
-// Illegal edges; and the same while the next ones are counted.
-const uint ILLEGAL_COUNT = 1u;
-const uint RELINK_COUNT = 2u;
+// The words that steer rounds. Illegal edges, of even and of odd rounds: at 4 times the parity.
+#define ILLEGAL_COUNT(PARITY) (4u * (PARITY))
 // Edges that the filter left open.
-const uint DEFERRED_COUNT = 3u;
-// The number of this round, which never repeats while the stamps are kept.
-const uint ROUND = 4u;
+const uint DEFERRED_COUNT = 8u;
+// Illegal edges that this round takes: all, or none where it is another kernel's turn.
+const uint TAKEN_COUNT = 9u;
+// The number of the last round, which never repeats while the stamps are kept; and of this one.
+const uint ROUND = 10u;
+const uint ROUND_NOW = 11u;
+// Whether any edge of the mesh was tested.
+const uint ANY_TESTED = 12u;
+// Edges of the list that was tested.
+const uint LISTED_COUNT = 13u;
+// Illegal edges after the tail.
+const uint PENDING_COUNT = 16u;
 
 // The words of a report; flips and tests take two.
 const uint REPORT_ROUNDS = 0u;
@@ -52,23 +58,17 @@ void add_wide(WORDS words, uint at, uint value) {
     }
 }
 
-void claim(WORDS claims, uint h, uint g) {
-    uint mine = priority(h);
-    atomicMin(claims.at[h / 3u], mine);
-    atomicMin(claims.at[g / 3u], mine);
+// Step 2: an illegal edge claims its two triangles, in the name of its lower half-edge.
+void claim(WORDS claims, uint lower, uint upper) {
+    uint mine = priority(lower);
+    atomicMin(claims.at[lower / 3u], mine);
+    atomicMin(claims.at[upper / 3u], mine);
 }
 
-// Flips h if it has both its triangles, whose links nobody else touches then. Outer links keep the names that they had
-// before the round; a triangle's stamp says that it was flipped in this round, and along which edge.
-bool flip_if_won(WORDS triangles, WORDS links, WORDS claims, WORDS stamps, uint round, uint h) {
-    uint mine = priority(h);
-    if (claims.at[h / 3u] != mine) {
-        return false;
-    }
-    uint g = links.at[h];
-    if (claims.at[g / 3u] != mine) {
-        return false;
-    }
+// Step 3, first half: flips h, whose twin is g, if it has both its triangles; then nobody else touches their links. Outer
+// links keep the names that they had before the round. A triangle's stamp says that it was flipped in this round, and
+// along which edge.
+void flip_pair(WORDS triangles, WORDS links, WORDS stamps, uint round, uint h, uint g) {
     uint h1 = next_edge(h);
     uint g1 = next_edge(g);
     uint t_outer = links.at[h1];
@@ -83,48 +83,47 @@ bool flip_if_won(WORDS triangles, WORDS links, WORDS claims, WORDS stamps, uint 
     links.at[g1] = h1;
     stamps.at[h / 3u] = round << 2 | h % 3u;
     stamps.at[g / 3u] = round << 2 | g % 3u;
-    return true;
 }
 
-// The edges that a flipped or an illegal edge hands on to the next round, each by its lower half-edge.
+// What is left of a side of a round's item for the next round.
 struct Handed {
-    uint count;
-    uint edges[4];
+    bool some;
+    uint side;
+    uint outer;
+    uint mark;
 };
 
-// After all flips of the round: renews the outer links of the two triangles of a flip. The outer edge behind the flipped
-// one went over to the other triangle, on this side as on the far side. An edge between two flips is renewed and handed on
-// by both sides alike, but only the lower one hands it on.
-Handed relink(WORDS triangles, WORDS links, WORDS claims, WORDS stamps, uint round, uint h) {
-    uint g = prev_edge(links.at[next_edge(h)]);
-    claims.at[h / 3u] = NONE;
-    claims.at[g / 3u] = NONE;
-    uint sides[4] = uint[4](h, g, prev_edge(h), prev_edge(g));
+// The two triangles of a flip have four outer sides, k from 0 to 3.
+uint side_of(uint h, uint g, uint k) {
+    uint edge = (k & 1u) == 0u ? h : g;
+    return k < 2u ? edge : prev_edge(edge);
+}
+
+// Step 3, second half, after all flips of the round: renews the link of an outer side. The outer edge behind the flipped one
+// went over to the other triangle, on this side as on the far side. An edge between two flips is renewed and handed on by
+// both sides alike, but only the lower one hands it on.
+Handed renew(WORDS links, WORDS stamps, uint round, uint side) {
     Handed handed;
-    handed.count = 0u;
-    for (uint k = 0u; k < 4u; k++) {
-        uint side = sides[k];
-        uint outer = links.at[side];
-        uint mark = outer & CONSTRAINED;
-        outer &= HALF_EDGE;
-        uint stamp = stamps.at[outer / 3u];
-        bool flipped = stamp >> 2 == round;
-        if (flipped) {
-            uint edge = outer - outer % 3u + (stamp & 3u);
-            outer = outer == next_edge(edge) ? prev_edge(links.at[outer]) : outer;
-            links.at[side] = outer | mark;
-        } else {
-            links.at[outer] = side | mark;
-        }
-        if (!flipped || side < outer) {
-            handed.edges[handed.count++] = min(side, outer);
-        }
+    handed.side = side;
+    uint outer = links.at[side];
+    handed.mark = outer & CONSTRAINED;
+    outer &= HALF_EDGE;
+    uint stamp = stamps.at[outer / 3u];
+    bool flipped = stamp >> 2 == round;
+    if (flipped) {
+        uint edge = outer - outer % 3u + (stamp & 3u);
+        outer = outer == next_edge(edge) ? prev_edge(links.at[outer]) : outer;
+        links.at[side] = outer | handed.mark;
+    } else {
+        links.at[outer] = side | handed.mark;
     }
+    handed.outer = outer;
+    handed.some = !flipped || side < outer;
     return handed;
 }
 
-// The same for an illegal edge that was not flipped: it stays active, unless a flip beside it hands it on. A link that
-// another invocation renews meanwhile leads to the same two triangles before and after.
+// The same for an illegal edge that was not flipped: it stays active, unless a flip beside it hands it on. It gives back what
+// it claimed. A link that another invocation renews meanwhile leads to the same triangles before and after.
 Handed leave(WORDS links, WORDS claims, WORDS stamps, uint round, uint h) {
     uint stamp = stamps.at[h / 3u];
     bool flipped = stamp >> 2 == round;
@@ -132,13 +131,14 @@ Handed leave(WORDS links, WORDS claims, WORDS stamps, uint round, uint h) {
     if (flipped && h == next_edge(h - h % 3u + (stamp & 3u))) {
         side = prev_edge(links.at[h]);
     }
-    uint u = twin(links, side) / 3u;
+    uint g = twin(links, side);
     claims.at[h / 3u] = NONE;
-    claims.at[u] = NONE;
-    flipped = flipped || stamps.at[u] >> 2 == round;
+    claims.at[g / 3u] = NONE;
     Handed handed;
-    handed.count = flipped ? 0u : 1u;
-    handed.edges[0] = h;
+    handed.some = !flipped && stamps.at[g / 3u] >> 2 != round;
+    handed.side = h;
+    handed.outer = g;
+    handed.mark = 0u;
     return handed;
 }
 

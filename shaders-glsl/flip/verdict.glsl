@@ -9,26 +9,14 @@ const uint LEGAL = 0u;
 const uint ILLEGAL = 1u;
 const uint OPEN = 2u;
 
-bool is_ghost_edge(WORDS triangles, uint h) {
-    return origin(triangles, h) == GHOST || destination(triangles, h) == GHOST;
-}
-
-// Of the edge of h, which is no free one: `is_illegal` of the reference.
-uint verdict(WORDS triangles, WORDS links, ReadPoints positions, uint h) {
-    uint g = links.at[h];
-    if ((g & CONSTRAINED) != 0u) {
-        return LEGAL;
-    }
-    uint a = apex(triangles, h);
-    uint b = origin(triangles, h);
-    uint c = destination(triangles, h);
-    uint d = apex(triangles, g);
+// Of an edge from b to c that is not constrained, between the corners a, on its left, and d: `is_illegal` of the reference.
+uint verdict(ReadPoints positions, uint a, uint b, uint c, uint d) {
     if (a == d || a == GHOST || d == GHOST) {
         return LEGAL;
     }
     int sign;
     if (b == GHOST || c == GHOST) {
-        // h runs from v to the ghost, or back, in the ghost triangle of the hull edge from v to the next vertex.
+        // From v to the ghost, or back, in the ghost triangle of the hull edge from v to the next vertex.
         Point p = point_at(positions, c == GHOST ? d : a);
         Point q = point_at(positions, c == GHOST ? b : c);
         Point r = point_at(positions, c == GHOST ? a : d);

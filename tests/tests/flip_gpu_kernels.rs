@@ -51,60 +51,100 @@ fn cases() -> Vec<Case> {
 struct Uploaded {
     mesh: Mesh,
     claims: Buffer<u32>,
+    next_claims: Buffer<u32>,
     stamps: Buffer<u32>,
     list: Buffer<u32>,
     list_count: Buffer<u32>,
     out: Buffer<u32>,
+    also: Buffer<u32>,
+    also_count: Buffer<u32>,
     deferred: Buffer<u32>,
     listed: Buffer<u32>,
     words: Buffer<u32>,
     report: Buffer<u32>,
 }
 
-const WORD_TAKEN: usize = 0;
-const WORD_ILLEGAL: usize = 1;
-const WORD_RELINK: usize = 2;
-const WORD_DEFERRED: usize = 3;
-const WORD_ROUND: usize = 4;
+/// Places of the words that steer rounds: illegal edges at 0 for even rounds and at 4 for odd ones.
+const DEFERRED: usize = 8;
+const TAKEN: usize = 9;
+const ROUND: usize = 10;
+const ROUND_NOW: usize = 11;
+const ANY_TESTED: usize = 12;
+const LISTED: usize = 13;
+const PENDING: usize = 16;
 
 impl Uploaded {
-    fn new(gpu: &mut Gpu, case: &Case, list: &[u32]) -> Self {
+    fn new(gpu: &mut Gpu, case: &Case, list: &[u32], words: &[(usize, u32)]) -> Self {
         let slots = case.mesh.slots();
         let mesh = Mesh::with_slots(&gpu.device, case.positions.len(), slots).unwrap();
         mesh.upload(&mut gpu.engine, &case.mesh, &case.positions).unwrap();
-        let mut words = [0; 8];
-        words[WORD_ROUND] = case.scratch.round;
+        let mut all = [0; 20];
+        all[ROUND] = case.scratch.round;
+        words.iter().for_each(|&(place, word)| all[place] = word);
+        let room = list.len().max(3 * slots) + 4;
         let mut padded = list.to_vec();
-        padded.resize(list.len().max(3 * slots) + 1, 7);
+        padded.resize(room, 7);
         Self {
             mesh,
             claims: gpu.buffer(&case.scratch.claims),
+            next_claims: gpu.buffer(&vec![NONE; slots]),
             stamps: gpu.buffer(&case.scratch.stamps),
             list: gpu.buffer(&padded),
             list_count: gpu.buffer(&[list.len() as u32]),
-            out: gpu.buffer(&vec![7; 3 * slots + 1]),
-            deferred: gpu.buffer(&vec![7; 3 * slots + 4]),
+            out: gpu.buffer(&vec![7; room]),
+            also: gpu.buffer(&vec![7; room]),
+            also_count: gpu.buffer(&[2]),
+            deferred: gpu.buffer(&vec![7; room]),
             listed: gpu.buffer(&vec![0; 3 * slots / 32 + 1]),
-            words: gpu.buffer(&words),
+            words: gpu.buffer(&all),
             report: gpu.buffer(&[0; 8]),
         }
     }
 
-    fn word(&self, gpu: &mut Gpu, word: usize) -> usize {
-        gpu.fetch(self.words.view())[word] as usize
+    fn word(&self, gpu: &mut Gpu, word: usize) -> u32 {
+        gpu.fetch(self.words.view())[word]
     }
 
-    fn report(&self, gpu: &mut Gpu) -> [u32; 3] {
+    fn report(&self, gpu: &mut Gpu) -> [u64; 3] {
         let words = gpu.fetch(self.report.view());
         assert_eq!((words[2], words[4]), (0, 0));
-        [words[0], words[1], words[3]]
+        [words[0], words[1], words[3]].map(u64::from)
     }
 
     /// The first of a list, whose order is that of arrival.
-    fn sorted(&self, gpu: &mut Gpu, list: &Buffer<u32>, count: usize) -> Vec<u32> {
-        let mut found = gpu.fetch(list.view())[..count].to_vec();
-        found.sort_unstable();
-        found
+    fn sorted(&self, gpu: &mut Gpu, list: &Buffer<u32>, from: usize, count: usize) -> Vec<u32> {
+        sorted(gpu.fetch(list.view())[from..from + count].to_vec())
+    }
+
+    /// What the filter left of `test_mesh` or `advance_edges`.
+    fn test_deferred(&self, gpu: &mut Gpu, claims: &Buffer<u32>, illegal: &Buffer<u32>, parity: u32) {
+        let arguments = self.test_arguments(&self.deferred, claims, illegal, parity);
+        run::<TestEdges>(gpu, &[("ARITHMETIC", 1)], 2, &arguments);
+    }
+
+    fn test_arguments<'a>(
+        &'a self,
+        edges: &'a Buffer<u32>,
+        claims: &'a Buffer<u32>,
+        illegal: &'a Buffer<u32>,
+        parity: u32,
+    ) -> TestEdgesArgs<'a> {
+        TestEdgesArgs {
+            triangles: self.mesh.corners(),
+            links: self.mesh.twins(),
+            positions: self.mesh.positions().cast(),
+            edges: edges.view(),
+            edge_count: None,
+            listed: None,
+            claims: claims.view(),
+            illegal: illegal.view(),
+            deferred: self.deferred.view(),
+            words: self.words.view(),
+            report: self.report.view(),
+            limit: edges.len() as u32,
+            scope: 0,
+            parity,
+        }
     }
 }
 
@@ -129,46 +169,63 @@ fn shuffled(mesh: &GhostMesh, edges: &[u32]) -> Vec<u32> {
 }
 
 #[test]
-fn test_edges() {
+fn test_mesh() {
     let mut gpu = Gpu::open();
     for (turn, case) in cases().iter().enumerate() {
-        let hull_alone = turn % 3 == 0;
-        let mut scratch = case.scratch.clone();
-        let (expected, tests) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, hull_alone, &mut scratch);
-        // As they are handed on; repeated; and all edges, where those are the list.
-        let all = turn % 4 == 0;
-        for source in 0..if all { 3 } else { 2 } {
-            let list = if source == 1 { shuffled(&case.mesh, &case.edges) } else { case.edges.clone() };
-            let on = Uploaded::new(&mut gpu, case, &list);
-            let arguments = TestEdgesArgs {
+        for (scope, parity) in [(0, turn as u32 % 2), (1, 0)] {
+            let mut scratch = case.scratch.clone();
+            let (expected, tests) = kernels::test_mesh(&case.mesh, &case.positions, scope == 1, &mut scratch);
+            let on = Uploaded::new(&mut gpu, case, &[], &[]);
+            let arguments = TestMeshArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
-                edges: (source != 2).then(|| on.list.view()),
-                edge_count: (source != 2).then(|| on.list_count.view()),
-                listed: (source == 1).then(|| on.listed.view()),
                 claims: on.claims.view(),
                 illegal: on.out.view(),
                 deferred: on.deferred.view(),
                 words: on.words.view(),
                 report: on.report.view(),
                 slots: on.mesh.slots(),
-                limit: list.len() as u32,
-                least: 0,
+                scope,
+                parity,
+            };
+            let groups = case.mesh.slots().div_ceil(256) as u32;
+            run::<TestMesh>(&mut gpu, &[("ARITHMETIC", 0)], groups + 1, &arguments);
+            on.test_deferred(&mut gpu, &on.claims, &on.out, parity);
+            let count = on.word(&mut gpu, 4 * parity as usize) as usize;
+            assert_eq!(on.sorted(&mut gpu, &on.out, 0, count), sorted(expected), "{}", case.name);
+            assert_eq!(gpu.fetch(on.claims.view()), scratch.claims, "{}", case.name);
+            let rounds = u64::from(tests != 0);
+            assert_eq!(on.report(&mut gpu), [rounds, 0, tests], "{}", case.name);
+            assert_eq!(u64::from(on.word(&mut gpu, ANY_TESTED)), rounds);
+        }
+    }
+}
+
+#[test]
+fn test_edges() {
+    let mut gpu = Gpu::open();
+    for (turn, case) in cases().iter().enumerate() {
+        let hull_alone = turn % 3 == 0;
+        let mut scratch = case.scratch.clone();
+        let (expected, tests) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, hull_alone, &mut scratch);
+        for list in [case.edges.clone(), shuffled(&case.mesh, &case.edges)] {
+            let on = Uploaded::new(&mut gpu, case, &list, &[]);
+            let arguments = TestEdgesArgs {
+                edge_count: Some(on.list_count.view()),
+                listed: Some(on.listed.view()),
                 scope: u32::from(hull_alone),
-                again: 0,
+                ..on.test_arguments(&on.list, &on.claims, &on.out, 1)
             };
             // First what the filter knows, then the rest.
             run::<TestEdges>(&mut gpu, &[("ARITHMETIC", 0)], 3, &arguments);
-            let again = TestEdgesArgs { edges: Some(on.deferred.view()), listed: None, again: 1, ..arguments };
-            run::<TestEdges>(&mut gpu, &[("ARITHMETIC", 1)], 2, &again);
-            let count = on.word(&mut gpu, WORD_ILLEGAL);
-            assert_eq!(on.sorted(&mut gpu, &on.out, count), sorted(expected.clone()), "{} {source}", case.name);
-            assert_eq!(gpu.fetch(on.claims.view()), scratch.claims, "{} {source}", case.name);
-            assert_eq!(on.report(&mut gpu), [0, 0, tests as u32], "{} {source}", case.name);
-            assert_eq!(on.word(&mut gpu, WORD_ROUND) as u32, scratch.round);
-            let taken = on.word(&mut gpu, WORD_TAKEN);
-            assert_eq!(taken != 0, if source == 2 { tests != 0 } else { !list.is_empty() }, "{}", case.name);
+            on.test_deferred(&mut gpu, &on.claims, &on.out, 1);
+            let count = on.word(&mut gpu, 4) as usize;
+            assert_eq!(on.sorted(&mut gpu, &on.out, 0, count), sorted(expected.clone()), "{}", case.name);
+            assert_eq!(gpu.fetch(on.claims.view()), scratch.claims, "{}", case.name);
+            let rounds = u64::from(!list.is_empty());
+            assert_eq!(on.report(&mut gpu), [rounds, 0, tests], "{}", case.name);
+            assert_eq!(on.word(&mut gpu, LISTED), list.len() as u32);
         }
     }
 }
@@ -178,35 +235,42 @@ fn flip_edges() {
     let mut gpu = Gpu::open();
     for case in &mut cases() {
         let (illegal, _) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, false, &mut case.scratch);
-        let on = Uploaded::new(&mut gpu, case, &illegal);
-        let mut words = gpu.fetch(on.words.view());
-        (words[WORD_TAKEN], words[WORD_ILLEGAL], words[WORD_DEFERRED]) = (1, illegal.len() as u32, 5);
-        gpu.engine.upload(on.words.view(), &words).unwrap();
+        let words = [(4, illegal.len() as u32), (DEFERRED, 5), (LISTED, 1), (ANY_TESTED, 1)];
+        let on = Uploaded::new(&mut gpu, case, &illegal, &words);
         let bits = vec![u32::MAX; 3 * case.mesh.slots() / 32 + 1];
         gpu.engine.upload(on.listed.view(), &bits).unwrap();
-        let cleared = gpu.buffer(&[3_u32]);
+        let tested = gpu.buffer(&[3_u32, 9]);
         let arguments = FlipEdgesArgs {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
             claims: on.claims.view(),
             stamps: on.stamps.view(),
             illegal: on.list.view(),
-            edge_count: on.list_count.view(),
-            edges: Some(cleared.view()),
+            edges: Some(tested.view()),
+            edge_count: Some(on.list_count.view()),
             listed: Some(on.listed.view()),
             words: on.words.view(),
             report: on.report.view(),
-            limit: u32::MAX,
+            limit: 2,
+            least: illegal.len() as u32 + 1,
+            parity: 1,
         };
+        // Too few: then there is nothing to do.
+        let before = gpu.fetch(on.stamps.view());
         run::<FlipEdges>(&mut gpu, &[], 2, &arguments);
+        assert_eq!((on.word(&mut gpu, TAKEN), gpu.fetch(on.stamps.view())), (0, before), "{}", case.name);
+        assert_eq!(on.word(&mut gpu, 4), illegal.len() as u32);
+        run::<FlipEdges>(&mut gpu, &[], 2, &FlipEdgesArgs { least: illegal.len() as u32, ..arguments });
         let mut expected = illegal.clone();
         let flips = kernels::flip_edges(&mut case.mesh, &mut case.scratch, &mut expected);
         assert_eq!(gpu.fetch(on.list.view())[..expected.len()], expected, "{}", case.name);
         assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
         assert_eq!(gpu.fetch(on.stamps.view()), case.scratch.stamps, "{}", case.name);
-        assert_eq!(on.report(&mut gpu), [1, flips as u32, 0], "{}", case.name);
-        assert_eq!(on.word(&mut gpu, WORD_RELINK), expected.len());
-        assert_eq!((on.word(&mut gpu, WORD_DEFERRED), gpu.fetch(on.list_count.view())), (0, vec![0]));
+        assert_eq!(on.report(&mut gpu), [0, flips, 0], "{}", case.name);
+        let words = gpu.fetch(on.words.view());
+        assert_eq!([words[TAKEN], words[ROUND_NOW]], [expected.len() as u32, case.scratch.round]);
+        assert_eq!([words[DEFERRED], words[ANY_TESTED]], [0; 2]);
+        assert_eq!(gpu.fetch(on.list_count.view()), [0], "the list is emptied");
         assert_eq!(gpu.fetch(on.listed.view())[0], !(1 << 3), "the bit of the one edge that was listed");
     }
 }
@@ -217,25 +281,20 @@ fn relink_edges() {
     for case in &mut cases() {
         let (mut illegal, _) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, false, &mut case.scratch);
         kernels::flip_edges(&mut case.mesh, &mut case.scratch, &mut illegal);
-        let on = Uploaded::new(&mut gpu, case, &illegal);
-        let mut words = gpu.fetch(on.words.view());
-        words[WORD_RELINK] = illegal.len() as u32;
-        words[WORD_ILLEGAL] = illegal.len() as u32;
-        gpu.engine.upload(on.words.view(), &words).unwrap();
+        let count = illegal.len() as u32;
+        let on =
+            Uploaded::new(&mut gpu, case, &illegal, &[(0, count), (TAKEN, count), (ROUND_NOW, case.scratch.round)]);
         gpu.engine.upload(on.list_count.view(), &[0]).unwrap();
-        let also_count = gpu.buffer(&[2_u32]);
         let arguments = RelinkEdgesArgs {
-            triangles: on.mesh.corners(),
             links: on.mesh.twins(),
             claims: on.claims.view(),
             stamps: on.stamps.view(),
             illegal: on.list.view(),
             edges: on.out.view(),
             edge_count: on.list_count.view(),
-            also: Some(on.deferred.view()),
-            also_count: Some(also_count.view()),
             words: on.words.view(),
-            also_limit: on.deferred.len() as u32,
+            limit: on.out.len() as u32,
+            parity: 0,
         };
         run::<RelinkEdges>(&mut gpu, &[], 2, &arguments);
         let expected = kernels::relink_edges(&mut case.mesh, &mut case.scratch, &illegal);
@@ -243,11 +302,54 @@ fn relink_edges() {
         assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
         assert_eq!(gpu.fetch(on.claims.view()), vec![NONE; case.mesh.slots()], "{}", case.name);
         let count = gpu.fetch(on.list_count.view())[0] as usize;
-        assert_eq!(on.sorted(&mut gpu, &on.out, count), sorted(expected.clone()), "{}", case.name);
-        assert_eq!(gpu.fetch(also_count.view()), [2 + count as u32]);
-        let also = gpu.fetch(on.deferred.view())[2..2 + count].to_vec();
-        assert_eq!(sorted(also), sorted(expected), "{}", case.name);
-        assert_eq!(on.word(&mut gpu, WORD_ILLEGAL), 0);
+        assert_eq!(on.sorted(&mut gpu, &on.out, 0, count), sorted(expected), "{}", case.name);
+        assert_eq!([on.word(&mut gpu, 0), on.word(&mut gpu, ROUND)], [0, case.scratch.round]);
+    }
+}
+
+#[test]
+fn advance_edges() {
+    let mut gpu = Gpu::open();
+    for (turn, case) in cases().iter_mut().enumerate() {
+        let hull_alone = turn % 3 == 2;
+        let (mut illegal, _) =
+            kernels::test_edges(&case.mesh, &case.positions, &case.edges, hull_alone, &mut case.scratch);
+        kernels::flip_edges(&mut case.mesh, &mut case.scratch, &mut illegal);
+        let count = illegal.len() as u32;
+        let parity = turn as u32 % 2;
+        let words = [(4 * parity as usize, count), (TAKEN, count), (ROUND_NOW, case.scratch.round)];
+        let on = Uploaded::new(&mut gpu, case, &illegal, &words);
+        let arguments = AdvanceEdgesArgs {
+            triangles: on.mesh.corners(),
+            links: on.mesh.twins(),
+            positions: on.mesh.positions().cast(),
+            claims: on.claims.view(),
+            next_claims: on.next_claims.view(),
+            stamps: on.stamps.view(),
+            illegal: on.list.view(),
+            next_illegal: on.out.view(),
+            deferred: on.deferred.view(),
+            also: Some(on.also.view()),
+            also_count: Some(on.also_count.view()),
+            words: on.words.view(),
+            report: on.report.view(),
+            also_limit: on.also.len() as u32,
+            scope: u32::from(hull_alone),
+            parity,
+        };
+        run::<AdvanceEdges>(&mut gpu, &[("ARITHMETIC", 0)], 2, &arguments);
+        on.test_deferred(&mut gpu, &on.next_claims, &on.out, 1 - parity);
+        let (handed, next, tests) =
+            kernels::advance_edges(&mut case.mesh, &case.positions, &illegal, hull_alone, &mut case.scratch);
+        assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
+        assert_eq!(gpu.fetch(on.claims.view()), vec![NONE; case.mesh.slots()], "{}", case.name);
+        assert_eq!(gpu.fetch(on.next_claims.view()), case.scratch.claims, "{}", case.name);
+        assert_eq!(on.sorted(&mut gpu, &on.out, 0, next.len()), sorted(next.clone()), "{}", case.name);
+        assert_eq!(on.sorted(&mut gpu, &on.also, 2, handed.len()), sorted(handed.clone()), "{}", case.name);
+        assert_eq!(gpu.fetch(on.also_count.view()), [2 + handed.len() as u32]);
+        assert_eq!(on.report(&mut gpu), [u64::from(count != 0), 0, tests], "{}", case.name);
+        let counts = [parity, 1 - parity].map(|parity| on.word(&mut gpu, 4 * parity as usize));
+        assert_eq!(counts, [0, next.len() as u32], "{}", case.name);
     }
 }
 
@@ -255,39 +357,49 @@ fn relink_edges() {
 fn flip_tail() {
     let mut gpu = Gpu::open();
     for case in &mut cases() {
-        for [least, most] in [[usize::MAX, 3], [20, 100], [usize::MAX, 0]] {
-            let edges = case.edges.clone();
-            let on = Uploaded::new(&mut gpu, case, &edges);
+        let (mut illegal, _) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, false, &mut case.scratch);
+        for (turn, [least, most]) in [[usize::MAX, 3], [20, 100], [usize::MAX, 0], [9, 2]].into_iter().enumerate() {
+            let parity = turn % 2;
+            let on = Uploaded::new(&mut gpu, case, &illegal, &[(4 * parity, illegal.len() as u32), (PENDING, 99)]);
+            let claims = [[&on.claims, &on.next_claims], [&on.next_claims, &on.claims]][parity];
+            let lists = [[&on.list, &on.out], [&on.out, &on.list]][parity];
             let arguments = FlipTailArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
-                edges: on.list.view(),
-                edge_count: on.list_count.view(),
+                claims_0: claims[0].view(),
+                claims_1: claims[1].view(),
+                stamps: on.stamps.view(),
+                illegal_0: lists[0].view(),
+                illegal_1: lists[1].view(),
                 also: None,
                 also_count: None,
-                illegal: on.out.view(),
-                claims: on.claims.view(),
-                stamps: on.stamps.view(),
                 words: on.words.view(),
                 report: on.report.view(),
+                also_limit: 0,
                 scope: 0,
                 least: least as u32,
                 most: most as u32,
                 most_tests: u32::MAX,
-                also_limit: 0,
             };
             run::<FlipTail>(&mut gpu, &[("ARITHMETIC", 1)], 1, &arguments);
+            let limits = [least, most];
             let (left, report) =
-                kernels::flip_tail(&mut case.mesh, &case.positions, &edges, false, [least, most], &mut case.scratch);
+                kernels::flip_tail(&mut case.mesh, &case.positions, &illegal, false, limits, &mut case.scratch);
             assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
-            let count = gpu.fetch(on.list_count.view())[0] as usize;
-            assert_eq!(on.sorted(&mut gpu, &on.list, count), sorted(left.clone()), "{}", case.name);
-            let counts = [report.rounds, report.flips, report.tests].map(|count| count as u32);
-            assert_eq!(on.report(&mut gpu), counts, "{}", case.name);
-            assert_eq!(on.word(&mut gpu, WORD_ROUND) as u32, case.scratch.round, "{}", case.name);
+            assert_eq!(on.report(&mut gpu), [report.rounds, report.flips, report.tests], "{}", case.name);
+            assert_eq!(on.word(&mut gpu, ROUND), case.scratch.round, "{}", case.name);
+            assert_eq!(on.word(&mut gpu, PENDING), left.len() as u32, "{}", case.name);
             assert_eq!(gpu.fetch(on.stamps.view()), case.scratch.stamps, "{}", case.name);
-            case.edges = left;
+            let ended = (parity + report.rounds as usize) % 2;
+            if !left.is_empty() {
+                assert_eq!(on.word(&mut gpu, 4 * ended), left.len() as u32, "{}", case.name);
+                assert_eq!(on.sorted(&mut gpu, lists[ended], 0, left.len()), sorted(left.clone()), "{}", case.name);
+            }
+            assert_eq!(on.word(&mut gpu, 4 * (1 - ended)), 0, "{}", case.name);
+            assert_eq!(gpu.fetch(claims[ended].view()), case.scratch.claims, "{}", case.name);
+            assert!(gpu.fetch(claims[1 - ended].view()).iter().all(|&claim| claim == NONE), "{}", case.name);
+            illegal = left;
         }
     }
 }

@@ -2,8 +2,111 @@
 
 use polder_vulkan::{Access, BufferArgument, Code, Constant, Encoder, Shader, Side, View, include_spirv};
 
+/// The end of a round and the beginning of the next in one: renews the links around all flips, gives claimed triangles back,
+/// and tests the edges that are handed on, which claim their triangles for the next round. An illegal edge next to no flip
+/// is known to be illegal. What the filter leaves open is deferred to `test_edges` with exact arithmetic.
+#[derive(Debug, Clone, Copy)]
+pub enum AdvanceEdges {}
+
+/// Arguments of [`AdvanceEdges`].
+#[derive(Debug, Clone, Copy)]
+pub struct AdvanceEdgesArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// written
+    pub claims: View<'a, u32>,
+    /// read and written
+    pub next_claims: View<'a, u32>,
+    /// read
+    pub stamps: View<'a, u32>,
+    /// read
+    pub illegal: View<'a, u32>,
+    /// written
+    pub next_illegal: View<'a, u32>,
+    /// written
+    pub deferred: View<'a, u32>,
+    /// written, may be left out
+    pub also: Option<View<'a, u32>>,
+    /// read and written, may be left out
+    pub also_count: Option<View<'a, u32>>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// read and written
+    pub report: View<'a, u32>,
+    /// a value
+    pub also_limit: u32,
+    /// a value
+    pub scope: u32,
+    /// a value
+    pub parity: u32,
+}
+
+impl Shader for AdvanceEdges {
+    type Args<'a> = AdvanceEdgesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "advance_edges",
+        words: include_spirv!("../spv/advance_edges.spv"),
+        without_float64: Some(include_spirv!("../spv/advance_edges.integers.spv")),
+        argument_bytes: 116,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "claims", offset: 24, access: Access::Write },
+            BufferArgument { name: "next_claims", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "stamps", offset: 40, access: Access::Read },
+            BufferArgument { name: "illegal", offset: 48, access: Access::Read },
+            BufferArgument { name: "next_illegal", offset: 56, access: Access::Write },
+            BufferArgument { name: "deferred", offset: 64, access: Access::Write },
+            BufferArgument { name: "also", offset: 72, access: Access::Write },
+            BufferArgument { name: "also_count", offset: 80, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 88, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 96, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformArithmetic",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "9709e49c0a2305bd6e77b0ac667be86b937846dacf28113b03b0a0416329438b",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.claims);
+        encoder.buffer(32, args.next_claims);
+        encoder.buffer(40, args.stamps);
+        encoder.buffer(48, args.illegal);
+        encoder.buffer(56, args.next_illegal);
+        encoder.buffer(64, args.deferred);
+        encoder.optional(72, args.also);
+        encoder.optional(80, args.also_count);
+        encoder.buffer(88, args.words);
+        encoder.buffer(96, args.report);
+        encoder.value(104, args.also_limit);
+        encoder.value(108, args.scope);
+        encoder.value(112, args.parity);
+    }
+}
+
 /// Step 3 of a round, first half: of all that claim a triangle the least priority gets it, and who got both is flipped.
-/// Outer links keep the names that they had before the round, until `relink_edges` renews them.
+/// Outer links keep the names that they had before the round, until they are renewed.
 #[derive(Debug, Clone, Copy)]
 pub enum FlipEdges {}
 
@@ -14,16 +117,16 @@ pub struct FlipEdgesArgs<'a> {
     pub triangles: View<'a, u32>,
     /// read and written
     pub links: View<'a, u32>,
-    /// read and written
+    /// read
     pub claims: View<'a, u32>,
     /// read and written
     pub stamps: View<'a, u32>,
     /// read and written
     pub illegal: View<'a, u32>,
-    /// read and written
-    pub edge_count: View<'a, u32>,
     /// read, may be left out
     pub edges: Option<View<'a, u32>>,
+    /// read and written, may be left out
+    pub edge_count: Option<View<'a, u32>>,
     /// read and written, may be left out
     pub listed: Option<View<'a, u32>>,
     /// read and written
@@ -32,6 +135,10 @@ pub struct FlipEdgesArgs<'a> {
     pub report: View<'a, u32>,
     /// a value
     pub limit: u32,
+    /// a value
+    pub least: u32,
+    /// a value
+    pub parity: u32,
 }
 
 impl Shader for FlipEdges {
@@ -41,15 +148,15 @@ impl Shader for FlipEdges {
         name: "flip_edges",
         words: include_spirv!("../spv/flip_edges.spv"),
         without_float64: None,
-        argument_bytes: 84,
+        argument_bytes: 92,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
-            BufferArgument { name: "claims", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "claims", offset: 16, access: Access::Read },
             BufferArgument { name: "stamps", offset: 24, access: Access::ReadWrite },
             BufferArgument { name: "illegal", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "edge_count", offset: 40, access: Access::ReadWrite },
-            BufferArgument { name: "edges", offset: 48, access: Access::Read },
+            BufferArgument { name: "edges", offset: 40, access: Access::Read },
+            BufferArgument { name: "edge_count", offset: 48, access: Access::ReadWrite },
             BufferArgument { name: "listed", offset: 56, access: Access::ReadWrite },
             BufferArgument { name: "words", offset: 64, access: Access::ReadWrite },
             BufferArgument { name: "report", offset: 72, access: Access::ReadWrite },
@@ -57,7 +164,7 @@ impl Shader for FlipEdges {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "bd412f9246bcb77fcac68be0b48280d7d50a91a8718b31e0bc456772d06de64b",
+        source_hash: "2a1fb41a640015dc3485746464efb4cd64f4629ed705cd51b3c642cbc3b3fb61",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -67,17 +174,20 @@ impl Shader for FlipEdges {
         encoder.buffer(16, args.claims);
         encoder.buffer(24, args.stamps);
         encoder.buffer(32, args.illegal);
-        encoder.buffer(40, args.edge_count);
-        encoder.optional(48, args.edges);
+        encoder.optional(40, args.edges);
+        encoder.optional(48, args.edge_count);
         encoder.optional(56, args.listed);
         encoder.buffer(64, args.words);
         encoder.buffer(72, args.report);
         encoder.value(80, args.limit);
+        encoder.value(84, args.least);
+        encoder.value(88, args.parity);
     }
 }
 
-/// Whole rounds inside one workgroup, while few edges are active: as many as `most`, and fewer when an edge is left to do
-/// nothing with, or too many. The same rounds as by the wide kernels.
+/// Whole rounds inside one workgroup, from the claims of one to the claims of the next, while few edges are illegal: so many
+/// rounds as are allowed, and fewer where nothing is left, or too much. The same rounds as by the wide kernels. The first
+/// edges of a round's list lie in shared memory with their twins, the others in the lists of the wide kernels.
 #[derive(Debug, Clone, Copy)]
 pub enum FlipTail {}
 
@@ -91,23 +201,25 @@ pub struct FlipTailArgs<'a> {
     /// read
     pub positions: View<'a, [u32; 4]>,
     /// read and written
-    pub edges: View<'a, u32>,
+    pub claims_0: View<'a, u32>,
     /// read and written
-    pub edge_count: View<'a, u32>,
+    pub claims_1: View<'a, u32>,
+    /// read and written
+    pub stamps: View<'a, u32>,
+    /// read and written
+    pub illegal_0: View<'a, u32>,
+    /// read and written
+    pub illegal_1: View<'a, u32>,
     /// written, may be left out
     pub also: Option<View<'a, u32>>,
     /// read and written, may be left out
     pub also_count: Option<View<'a, u32>>,
     /// read and written
-    pub illegal: View<'a, u32>,
-    /// read and written
-    pub claims: View<'a, u32>,
-    /// read and written
-    pub stamps: View<'a, u32>,
-    /// read and written
     pub words: View<'a, u32>,
     /// read and written
     pub report: View<'a, u32>,
+    /// a value
+    pub also_limit: u32,
     /// a value
     pub scope: u32,
     /// a value
@@ -116,8 +228,6 @@ pub struct FlipTailArgs<'a> {
     pub most: u32,
     /// a value
     pub most_tests: u32,
-    /// a value
-    pub also_limit: u32,
 }
 
 impl Shader for FlipTail {
@@ -132,13 +242,13 @@ impl Shader for FlipTail {
             BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
             BufferArgument { name: "positions", offset: 16, access: Access::Read },
-            BufferArgument { name: "edges", offset: 24, access: Access::ReadWrite },
-            BufferArgument { name: "edge_count", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "also", offset: 40, access: Access::Write },
-            BufferArgument { name: "also_count", offset: 48, access: Access::ReadWrite },
-            BufferArgument { name: "illegal", offset: 56, access: Access::ReadWrite },
-            BufferArgument { name: "claims", offset: 64, access: Access::ReadWrite },
-            BufferArgument { name: "stamps", offset: 72, access: Access::ReadWrite },
+            BufferArgument { name: "claims_0", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "claims_1", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "stamps", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "illegal_0", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "illegal_1", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "also", offset: 64, access: Access::Write },
+            BufferArgument { name: "also_count", offset: 72, access: Access::ReadWrite },
             BufferArgument { name: "words", offset: 80, access: Access::ReadWrite },
             BufferArgument { name: "report", offset: 88, access: Access::ReadWrite },
         ],
@@ -148,7 +258,7 @@ impl Shader for FlipTail {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "b7c524041b42ce2fde569fb365e92580a947aaa96396b9aa6616403ab66b8bd7",
+        source_hash: "f1649b2e99635d33bb1b1b6c05d045973e40e7d3514563e2203884be2eab2d3b",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -156,20 +266,20 @@ impl Shader for FlipTail {
         encoder.buffer(0, args.triangles);
         encoder.buffer(8, args.links);
         encoder.buffer(16, args.positions);
-        encoder.buffer(24, args.edges);
-        encoder.buffer(32, args.edge_count);
-        encoder.optional(40, args.also);
-        encoder.optional(48, args.also_count);
-        encoder.buffer(56, args.illegal);
-        encoder.buffer(64, args.claims);
-        encoder.buffer(72, args.stamps);
+        encoder.buffer(24, args.claims_0);
+        encoder.buffer(32, args.claims_1);
+        encoder.buffer(40, args.stamps);
+        encoder.buffer(48, args.illegal_0);
+        encoder.buffer(56, args.illegal_1);
+        encoder.optional(64, args.also);
+        encoder.optional(72, args.also_count);
         encoder.buffer(80, args.words);
         encoder.buffer(88, args.report);
-        encoder.value(96, args.scope);
-        encoder.value(100, args.least);
-        encoder.value(104, args.most);
-        encoder.value(108, args.most_tests);
-        encoder.value(112, args.also_limit);
+        encoder.value(96, args.also_limit);
+        encoder.value(100, args.scope);
+        encoder.value(104, args.least);
+        encoder.value(108, args.most);
+        encoder.value(112, args.most_tests);
     }
 }
 
@@ -311,12 +421,10 @@ pub enum RelinkEdges {}
 #[derive(Debug, Clone, Copy)]
 pub struct RelinkEdgesArgs<'a> {
     /// read and written
-    pub triangles: View<'a, u32>,
-    /// read and written
     pub links: View<'a, u32>,
     /// read and written
     pub claims: View<'a, u32>,
-    /// read and written
+    /// read
     pub stamps: View<'a, u32>,
     /// read
     pub illegal: View<'a, u32>,
@@ -324,14 +432,12 @@ pub struct RelinkEdgesArgs<'a> {
     pub edges: View<'a, u32>,
     /// read and written
     pub edge_count: View<'a, u32>,
-    /// written, may be left out
-    pub also: Option<View<'a, u32>>,
-    /// read and written, may be left out
-    pub also_count: Option<View<'a, u32>>,
     /// read and written
     pub words: View<'a, u32>,
     /// a value
-    pub also_limit: u32,
+    pub limit: u32,
+    /// a value
+    pub parity: u32,
 }
 
 impl Shader for RelinkEdges {
@@ -341,57 +447,52 @@ impl Shader for RelinkEdges {
         name: "relink_edges",
         words: include_spirv!("../spv/relink_edges.spv"),
         without_float64: None,
-        argument_bytes: 84,
+        argument_bytes: 64,
         buffers: &[
-            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
-            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
-            BufferArgument { name: "claims", offset: 16, access: Access::ReadWrite },
-            BufferArgument { name: "stamps", offset: 24, access: Access::ReadWrite },
-            BufferArgument { name: "illegal", offset: 32, access: Access::Read },
-            BufferArgument { name: "edges", offset: 40, access: Access::Write },
-            BufferArgument { name: "edge_count", offset: 48, access: Access::ReadWrite },
-            BufferArgument { name: "also", offset: 56, access: Access::Write },
-            BufferArgument { name: "also_count", offset: 64, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 72, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "claims", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "stamps", offset: 16, access: Access::Read },
+            BufferArgument { name: "illegal", offset: 24, access: Access::Read },
+            BufferArgument { name: "edges", offset: 32, access: Access::Write },
+            BufferArgument { name: "edge_count", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "4efc5b863378efc67ba791e60f64ce53b4fb1f671e6c6d8c16954ed3f6cc9a39",
+        source_hash: "f8faa55d09e6275f5d84c8f00bca6aa7542fdb2bab9dcafa6b686f6eca31a7c9",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.triangles);
-        encoder.buffer(8, args.links);
-        encoder.buffer(16, args.claims);
-        encoder.buffer(24, args.stamps);
-        encoder.buffer(32, args.illegal);
-        encoder.buffer(40, args.edges);
-        encoder.buffer(48, args.edge_count);
-        encoder.optional(56, args.also);
-        encoder.optional(64, args.also_count);
-        encoder.buffer(72, args.words);
-        encoder.value(80, args.also_limit);
+        encoder.buffer(0, args.links);
+        encoder.buffer(8, args.claims);
+        encoder.buffer(16, args.stamps);
+        encoder.buffer(24, args.illegal);
+        encoder.buffer(32, args.edges);
+        encoder.buffer(40, args.edge_count);
+        encoder.buffer(48, args.words);
+        encoder.value(56, args.limit);
+        encoder.value(60, args.parity);
     }
 }
 
-/// Steps 1 and 2 of a round: each active edge is tested, and illegal ones claim their two triangles. What the filter leaves
-/// open is deferred to the same kernel with exact arithmetic, which runs over it next.
+/// Steps 1 and 2 of a round over a list, in which edges may repeat: each is tested once, and illegal ones claim their two
+/// triangles. What the filter leaves open is deferred to the same kernel with exact arithmetic, which runs over it next.
 #[derive(Debug, Clone, Copy)]
 pub enum TestEdges {}
 
 /// Arguments of [`TestEdges`].
 #[derive(Debug, Clone, Copy)]
 pub struct TestEdgesArgs<'a> {
-    /// read and written
+    /// read
     pub triangles: View<'a, u32>,
-    /// read and written
+    /// read
     pub links: View<'a, u32>,
     /// read
     pub positions: View<'a, [u32; 4]>,
-    /// read and written, may be left out
-    pub edges: Option<View<'a, u32>>,
+    /// read and written
+    pub edges: View<'a, u32>,
     /// read, may be left out
     pub edge_count: Option<View<'a, u32>>,
     /// read and written, may be left out
@@ -406,16 +507,12 @@ pub struct TestEdgesArgs<'a> {
     pub words: View<'a, u32>,
     /// read and written
     pub report: View<'a, u32>,
-    /// read
-    pub slots: View<'a, u32>,
     /// a value
     pub limit: u32,
     /// a value
-    pub least: u32,
-    /// a value
     pub scope: u32,
     /// a value
-    pub again: u32,
+    pub parity: u32,
 }
 
 impl Shader for TestEdges {
@@ -425,10 +522,10 @@ impl Shader for TestEdges {
         name: "test_edges",
         words: include_spirv!("../spv/test_edges.spv"),
         without_float64: Some(include_spirv!("../spv/test_edges.integers.spv")),
-        argument_bytes: 112,
+        argument_bytes: 100,
         buffers: &[
-            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
-            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
             BufferArgument { name: "positions", offset: 16, access: Access::Read },
             BufferArgument { name: "edges", offset: 24, access: Access::ReadWrite },
             BufferArgument { name: "edge_count", offset: 32, access: Access::Read },
@@ -438,7 +535,6 @@ impl Shader for TestEdges {
             BufferArgument { name: "deferred", offset: 64, access: Access::Write },
             BufferArgument { name: "words", offset: 72, access: Access::ReadWrite },
             BufferArgument { name: "report", offset: 80, access: Access::ReadWrite },
-            BufferArgument { name: "slots", offset: 88, access: Access::Read },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -453,7 +549,7 @@ impl Shader for TestEdges {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "11e569180e130f3b973ad4e90ae1056d9dfc20dc4cfe63474802c11749b3fa8f",
+        source_hash: "41aed833c738e1ddf390818e082c87a6624c82908472209b6eeeac772fd8dffd",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -461,7 +557,7 @@ impl Shader for TestEdges {
         encoder.buffer(0, args.triangles);
         encoder.buffer(8, args.links);
         encoder.buffer(16, args.positions);
-        encoder.optional(24, args.edges);
+        encoder.buffer(24, args.edges);
         encoder.optional(32, args.edge_count);
         encoder.optional(40, args.listed);
         encoder.buffer(48, args.claims);
@@ -469,10 +565,91 @@ impl Shader for TestEdges {
         encoder.buffer(64, args.deferred);
         encoder.buffer(72, args.words);
         encoder.buffer(80, args.report);
-        encoder.buffer(88, args.slots);
-        encoder.value(96, args.limit);
-        encoder.value(100, args.least);
-        encoder.value(104, args.scope);
-        encoder.value(108, args.again);
+        encoder.value(88, args.limit);
+        encoder.value(92, args.scope);
+        encoder.value(96, args.parity);
+    }
+}
+
+/// Steps 1 and 2 of the first round: each edge of the mesh is tested, one triangle an invocation, and illegal ones claim
+/// their two triangles. What the filter leaves open is deferred to `test_edges` with exact arithmetic.
+#[derive(Debug, Clone, Copy)]
+pub enum TestMesh {}
+
+/// Arguments of [`TestMesh`].
+#[derive(Debug, Clone, Copy)]
+pub struct TestMeshArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written
+    pub claims: View<'a, u32>,
+    /// written
+    pub illegal: View<'a, u32>,
+    /// written
+    pub deferred: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// read and written
+    pub report: View<'a, u32>,
+    /// read
+    pub slots: View<'a, u32>,
+    /// a value
+    pub scope: u32,
+    /// a value
+    pub parity: u32,
+}
+
+impl Shader for TestMesh {
+    type Args<'a> = TestMeshArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "test_mesh",
+        words: include_spirv!("../spv/test_mesh.spv"),
+        without_float64: Some(include_spirv!("../spv/test_mesh.integers.spv")),
+        argument_bytes: 80,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "claims", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "illegal", offset: 32, access: Access::Write },
+            BufferArgument { name: "deferred", offset: 40, access: Access::Write },
+            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "slots", offset: 64, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformArithmetic",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "9c0f84f60e01746740cc9f9daca3f0000278d86f6aa7f174895962ca83f265a2",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.claims);
+        encoder.buffer(32, args.illegal);
+        encoder.buffer(40, args.deferred);
+        encoder.buffer(48, args.words);
+        encoder.buffer(56, args.report);
+        encoder.buffer(64, args.slots);
+        encoder.value(72, args.scope);
+        encoder.value(76, args.parity);
     }
 }

@@ -4,8 +4,11 @@ use super::Mesh;
 use crate::FlipReport;
 use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunReport, View};
 
-/// Words of a list's count, of the words that steer rounds, and of a report.
+/// Words of a list's count, and of a report.
 const WORDS: usize = 8;
+/// Words that steer rounds, and the one that says how many illegal edges a tail left.
+const STEERING: usize = 20;
+const PENDING: usize = 16;
 
 /// Edges to be tested in the next flip round: half-edges in any order, from either side and repeatedly, also of triangles
 /// that are freed later. Kernels append by `edge_list.glsl`.
@@ -95,20 +98,22 @@ impl TallyRead {
     }
 }
 
-/// Scratch memory of the stage, for one number of slots: at most 26 bytes a slot, and 6 for the list of [`Buffers::list`].
+/// Scratch memory of the stage, for one number of slots: 31 bytes a slot.
 #[derive(Debug)]
 pub struct Buffers {
     pub(super) slots: usize,
-    /// By triangle: the least priority that claims it.
-    pub(super) claims: Buffer<u32>,
+    /// By triangle: the least priority that claims it. Of even and of odd rounds.
+    pub(super) claims: [Buffer<u32>; 2],
     /// By triangle: the last round that flipped it, and along which edge.
     pub(super) stamps: Buffer<u32>,
     /// A bit for each half-edge: whether it was met in this round.
     pub(super) listed: Buffer<u32>,
+    /// Illegal edges of even rounds.
     pub(super) illegal: Buffer<u32>,
+    /// Those of odd rounds; a list for others, which a round has read before it writes there.
+    pub(super) list: EdgeList,
     pub(super) deferred: Buffer<u32>,
     pub(super) words: Buffer<u32>,
-    pub(super) list: EdgeList,
 }
 
 /// Edges of a mesh of so many slots.
@@ -123,12 +128,13 @@ fn listed_of(slots: usize) -> usize {
 pub(super) fn estimate(slots: usize) -> Estimate {
     Estimate::new()
         .buffer::<u32>("claims", slots)
+        .buffer::<u32>("claims", slots)
         .buffer::<u32>("stamps", slots)
         .buffer::<u32>("listed", listed_of(slots))
         .buffer::<u32>("illegal", edges_of(slots))
-        .buffer::<u32>("deferred", edges_of(slots))
-        .buffer::<u32>("flip words", WORDS)
         .and(EdgeList::estimate(edges_of(slots)))
+        .buffer::<u32>("deferred", edges_of(slots))
+        .buffer::<u32>("flip words", STEERING)
 }
 
 impl Buffers {
@@ -137,19 +143,35 @@ impl Buffers {
         let words = |name, len| Buffer::<u32>::new(device, name, len);
         Ok(Self {
             slots,
-            claims: words("claims", slots)?,
+            claims: [words("claims", slots)?, words("claims", slots)?],
             stamps: words("stamps", slots)?,
             listed: words("listed", listed_of(slots))?,
             illegal: words("illegal", edges_of(slots))?,
-            deferred: words("deferred", edges_of(slots))?,
-            words: words("flip words", WORDS)?,
             list: EdgeList::new(device, edges_of(slots))?,
+            deferred: words("deferred", edges_of(slots))?,
+            words: words("flip words", STEERING)?,
         })
     }
 
-    /// The list that [`Stage::record_flip`](super::Stage::record_flip) works on; free for others in between.
+    /// A list that may be given to [`Stage::record_round`](super::Stage::record_round) and
+    /// [`Stage::record_close_hull`](super::Stage::record_close_hull). Others than these two lose what is in it.
     pub fn list(&self) -> &EdgeList {
         &self.list
+    }
+
+    /// Illegal edges of even and of odd rounds.
+    pub(super) fn illegal(&self, parity: usize) -> View<'_, u32> {
+        if parity == 0 { self.illegal.view() } else { self.list.edges() }
+    }
+
+    /// One word: how many illegal edges the last [`Stage::record_flip`](super::Stage::record_flip) or
+    /// [`Stage::record_close_hull`](super::Stage::record_close_hull) left; zero if it is done.
+    ///
+    /// # Errors
+    ///
+    /// None.
+    pub fn pending(&self) -> Result<View<'_, u32>, Error> {
+        self.words.slice(PENDING..PENDING + 1)
     }
 
     pub(super) fn fit(&self, mesh: &Mesh, command: &'static str) -> Result<(), Error> {

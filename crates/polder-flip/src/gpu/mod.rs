@@ -24,9 +24,11 @@ pub struct Stage {
     /// Workgroups of wide kernels, which stride over their items.
     groups: [u32; 3],
     exact_groups: [u32; 3],
+    test_mesh: Kernel<TestMesh>,
     test_edges: Kernels<TestEdges>,
     flip_edges: Kernel<FlipEdges>,
     relink_edges: Kernel<RelinkEdges>,
+    advance_edges: Kernel<AdvanceEdges>,
     flip_tail: Kernel<FlipTail>,
 }
 
@@ -52,9 +54,11 @@ impl Stage {
             device: device.clone(),
             groups: [groups, 1, 1],
             exact_groups: [groups, 1, 1],
+            test_mesh: arithmetic.kernels(device, &[])?.first,
             test_edges: arithmetic.kernels(device, &[])?,
             flip_edges: Kernel::new(device, &[])?,
             relink_edges: Kernel::new(device, &[])?,
+            advance_edges: arithmetic.kernels(device, &[])?.first,
             flip_tail: tail.rest.unwrap_or(tail.first),
         })
     }

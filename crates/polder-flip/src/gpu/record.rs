@@ -3,19 +3,21 @@
 use super::{Buffers, EdgeList, Mesh, Stage, Tally};
 use crate::kernels::*;
 use crate::reference::round_bound;
-use polder_vulkan::{Error, Recording};
+use polder_vulkan::{Error, Recording, groups_for};
 
 const NONE: u32 = u32::MAX;
+/// Invocations of a workgroup, the same in all kernels.
+const WORKGROUP: u32 = 256;
 
-/// Wide rounds between two tails.
+/// Wide rounds between two tails: an even number.
 const WIDE: usize = 6;
-/// Fewer active edges than these are left to the tail, which keeps them up to four times as many.
-const FEW: u32 = 1024;
+/// Fewer illegal edges than these are left to the tail, which keeps them up to four times as many.
+const FEW: u32 = 256;
 /// Rounds of one tail, and tests: so that no dispatch takes long.
-const TAIL_ROUNDS: u32 = 4096;
-const TAIL_TESTS: u32 = 1 << 21;
-/// Of closing a hull: wide rounds, and tails.
-const HULL_WIDE: usize = 3;
+const TAIL_ROUNDS: u32 = 8192;
+const TAIL_TESTS: u32 = 1 << 20;
+/// Of closing a hull: wide rounds, an even number, and tails.
+const HULL_WIDE: usize = 2;
 const HULL_TAILS: usize = 2;
 
 /// Which edges may be flipped.
@@ -25,24 +27,12 @@ enum Scope {
     Hull = 1,
 }
 
-/// Where the edges of a round come from.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Source {
-    /// All edges of the mesh.
-    Mesh,
-    /// The list, in which edges may repeat.
-    AnyList,
-    /// The list as the round before left it, if it holds so many.
-    Handed { least: u32 },
-}
-
-/// All that a round works on.
+/// All that rounds work on.
 #[derive(Clone, Copy)]
 struct Round<'a> {
     mesh: &'a Mesh,
     buffers: &'a Buffers,
-    list: &'a EdgeList,
-    /// Another list that the edges handed on are appended to.
+    /// A list that edges handed on are appended to.
     also: Option<&'a EdgeList>,
     tally: &'a Tally,
     scope: Scope,
@@ -51,7 +41,8 @@ struct Round<'a> {
 impl Stage {
     /// To be recorded once before rounds over these buffers.
     pub fn record_start(&self, recording: &mut Recording, buffers: &Buffers) {
-        recording.fill(buffers.claims.view(), NONE);
+        recording.fill(buffers.claims[0].view(), NONE);
+        recording.fill(buffers.claims[1].view(), NONE);
         recording.fill(buffers.stamps.view(), 0);
         recording.fill(buffers.listed.view(), 0);
         recording.fill(buffers.words.view(), 0);
@@ -72,16 +63,14 @@ impl Stage {
     ) -> Result<(), Error> {
         buffers.fit(mesh, "flip")?;
         self.record_start(recording, buffers);
-        let list = &buffers.list;
-        list.record_clear(recording);
-        let round = Round { mesh, buffers, list, also: None, tally, scope: Scope::All };
-        self.record_wide(recording, round, Source::Mesh);
+        let round = Round { mesh, buffers, also: None, tally, scope: Scope::All };
+        self.test_mesh(recording, round);
         let bound = u32::try_from(round_bound(mesh.capacity())).unwrap_or(u32::MAX);
-        recording.repeat_ahead("flip", list.count(), bound, 1, 1, |body| {
-            for _ in 0..WIDE {
-                self.record_wide(body, round, Source::Handed { least: FEW });
+        recording.repeat_ahead("flip", buffers.pending()?, bound, 1, 1, |body| {
+            for turn in 0..WIDE {
+                self.advance(body, round, turn % 2, FEW);
             }
-            self.record_tail(body, round, FEW);
+            self.tail(body, round, FEW);
         });
         Ok(())
     }
@@ -101,16 +90,29 @@ impl Stage {
         tally: &Tally,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "flip round")?;
-        let round = Round { mesh, buffers, list, also: None, tally, scope: Scope::All };
-        self.record_wide(recording, round, Source::AnyList);
+        let round = Round { mesh, buffers, also: None, tally, scope: Scope::All };
+        self.test_list(recording, round, list);
+        self.flip(recording, round, Some(list), 0, 0);
+        let arguments = RelinkEdgesArgs {
+            links: mesh.twins(),
+            claims: buffers.claims[0].view(),
+            stamps: buffers.stamps.view(),
+            illegal: buffers.illegal(0),
+            edges: list.edges(),
+            edge_count: list.count(),
+            words: buffers.words.view(),
+            limit: list.limit(),
+            parity: 0,
+        };
+        recording.dispatch(&self.relink_edges, self.groups, &arguments);
         Ok(())
     }
 
-    /// Ghost flips alone until the hull is nowhere strictly reflex, over a list, or over all ghost edges and
-    /// [`Buffers::list`]. The edges that each round hands on are appended to `also`.
+    /// Ghost flips alone until the hull is nowhere strictly reflex, over a list, which is emptied, or over all ghost edges.
+    /// The edges that each round hands on are appended to `also`.
     ///
-    /// The host waits for nothing; afterwards the list is empty, but for a hull that needs more rounds than one dispatch
-    /// may take.
+    /// The host waits for nothing. Afterwards [`Buffers::pending`] is zero, but for a hull that needs more rounds than may be
+    /// taken without a look.
     ///
     /// # Errors
     ///
@@ -125,108 +127,158 @@ impl Stage {
         tally: &Tally,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "close hull")?;
-        let round = Round { mesh, buffers, list: list.unwrap_or(&buffers.list), also, tally, scope: Scope::Hull };
-        if list.is_none() {
-            round.list.record_clear(recording);
-        }
-        self.record_wide(recording, round, if list.is_none() { Source::Mesh } else { Source::AnyList });
-        if list.is_none() {
-            for _ in 0..HULL_WIDE {
-                self.record_wide(recording, round, Source::Handed { least: FEW });
+        let round = Round { mesh, buffers, also, tally, scope: Scope::Hull };
+        match list {
+            Some(list) => {
+                self.test_list(recording, round, list);
+                self.flip(recording, round, Some(list), 0, 0);
+                self.hand_on(recording, round, 0);
+                self.tail(recording, round, NONE);
             }
-        }
-        for _ in 0..HULL_TAILS {
-            self.record_tail(recording, round, NONE);
+            None => {
+                self.test_mesh(recording, round);
+                for turn in 0..HULL_WIDE {
+                    self.advance(recording, round, turn % 2, FEW);
+                }
+                for _ in 0..HULL_TAILS {
+                    self.tail(recording, round, NONE);
+                }
+            }
         }
         Ok(())
     }
 
-    fn record_wide(&self, recording: &mut Recording, round: Round<'_>, source: Source) {
-        let Round { mesh, buffers, list, also, tally, scope } = round;
-        let (triangles, links, positions) = (mesh.corners(), mesh.twins(), mesh.positions().cast());
-        let (claims, stamps, words) = (buffers.claims.view(), buffers.stamps.view(), buffers.words.view());
-        let (illegal, deferred) = (buffers.illegal.view(), buffers.deferred.view());
-        let listed = (source == Source::AnyList).then(|| buffers.listed.view());
-        let arguments = TestEdgesArgs {
-            triangles,
-            links,
-            positions,
-            edges: (source != Source::Mesh).then(|| list.edges()),
-            edge_count: (source != Source::Mesh).then(|| list.count()),
-            listed,
-            claims,
-            illegal,
-            deferred,
-            words,
-            report: tally.words(),
-            slots: mesh.slots(),
-            limit: list.limit(),
-            least: if let Source::Handed { least } = source { least } else { 0 },
-            scope: scope as u32,
-            again: 0,
-        };
-        recording.dispatch(&self.test_edges.first, self.groups, &arguments);
-        if let Some(exact) = &self.test_edges.rest {
-            let arguments = TestEdgesArgs {
-                edges: Some(deferred),
-                edge_count: None,
-                listed: None,
-                limit: deferred.len() as u32,
-                again: 1,
-                ..arguments
-            };
-            recording.dispatch(exact, self.exact_groups, &arguments);
-        }
-        let arguments = FlipEdgesArgs {
-            triangles,
-            links,
-            claims,
-            stamps,
-            illegal,
-            edge_count: list.count(),
-            edges: listed.map(|_| list.edges()),
-            listed,
-            words,
-            report: tally.words(),
-            limit: illegal.len() as u32,
-        };
-        recording.dispatch(&self.flip_edges, self.groups, &arguments);
-        let arguments = RelinkEdgesArgs {
-            triangles,
-            links,
-            claims,
-            stamps,
-            illegal,
-            edges: list.edges(),
-            edge_count: list.count(),
-            also: also.map(EdgeList::edges),
-            also_count: also.map(EdgeList::count),
-            words,
-            also_limit: also.map_or(0, EdgeList::limit),
-        };
-        recording.dispatch(&self.relink_edges, self.groups, &arguments);
+    /// One wide round, from its claims to those of the next, if so many edges are illegal.
+    fn advance(&self, recording: &mut Recording, round: Round<'_>, parity: usize, least: u32) {
+        self.flip(recording, round, None, parity, least);
+        self.hand_on(recording, round, parity);
     }
 
-    fn record_tail(&self, recording: &mut Recording, round: Round<'_>, least: u32) {
-        let Round { mesh, buffers, list, also, tally, scope } = round;
+    /// Every edge, and the claims of the first round.
+    fn test_mesh(&self, recording: &mut Recording, round: Round<'_>) {
+        let Round { mesh, buffers, tally, scope, .. } = round;
+        let arguments = TestMeshArgs {
+            triangles: mesh.corners(),
+            links: mesh.twins(),
+            positions: mesh.positions().cast(),
+            claims: buffers.claims[0].view(),
+            illegal: buffers.illegal(0),
+            deferred: buffers.deferred.view(),
+            words: buffers.words.view(),
+            report: tally.words(),
+            slots: mesh.slots(),
+            scope: scope as u32,
+            parity: 0,
+        };
+        recording.dispatch(&self.test_mesh, groups_for(mesh.capacity(), WORKGROUP), &arguments);
+        self.test_deferred(recording, round, 0);
+    }
+
+    /// A list, and the claims of a round over it.
+    fn test_list(&self, recording: &mut Recording, round: Round<'_>, list: &EdgeList) {
+        let listed = Some(round.buffers.listed.view());
+        let arguments = TestEdgesArgs {
+            edges: list.edges(),
+            edge_count: Some(list.count()),
+            listed,
+            limit: list.limit(),
+            ..self.deferred_arguments(round, 0)
+        };
+        recording.dispatch(&self.test_edges.first, self.groups, &arguments);
+        self.test_deferred(recording, round, 0);
+    }
+
+    /// What the filter left open.
+    fn test_deferred(&self, recording: &mut Recording, round: Round<'_>, parity: usize) {
+        if let Some(exact) = &self.test_edges.rest {
+            recording.dispatch(exact, self.exact_groups, &self.deferred_arguments(round, parity));
+        }
+    }
+
+    fn deferred_arguments<'a>(&self, round: Round<'a>, parity: usize) -> TestEdgesArgs<'a> {
+        let Round { mesh, buffers, tally, scope, .. } = round;
+        TestEdgesArgs {
+            triangles: mesh.corners(),
+            links: mesh.twins(),
+            positions: mesh.positions().cast(),
+            edges: buffers.deferred.view(),
+            edge_count: None,
+            listed: None,
+            claims: buffers.claims[parity].view(),
+            illegal: buffers.illegal(parity),
+            deferred: buffers.deferred.view(),
+            words: buffers.words.view(),
+            report: tally.words(),
+            limit: buffers.deferred.len() as u32,
+            scope: scope as u32,
+            parity: parity as u32,
+        }
+    }
+
+    fn flip(&self, recording: &mut Recording, round: Round<'_>, list: Option<&EdgeList>, parity: usize, least: u32) {
+        let Round { mesh, buffers, tally, .. } = round;
+        let arguments = FlipEdgesArgs {
+            triangles: mesh.corners(),
+            links: mesh.twins(),
+            claims: buffers.claims[parity].view(),
+            stamps: buffers.stamps.view(),
+            illegal: buffers.illegal(parity),
+            edges: list.map(EdgeList::edges),
+            edge_count: list.map(EdgeList::count),
+            listed: list.map(|_| buffers.listed.view()),
+            words: buffers.words.view(),
+            report: tally.words(),
+            limit: list.map_or(0, EdgeList::limit),
+            least,
+            parity: parity as u32,
+        };
+        recording.dispatch(&self.flip_edges, self.groups, &arguments);
+    }
+
+    fn hand_on(&self, recording: &mut Recording, round: Round<'_>, parity: usize) {
+        let Round { mesh, buffers, also, tally, scope } = round;
+        let arguments = AdvanceEdgesArgs {
+            triangles: mesh.corners(),
+            links: mesh.twins(),
+            positions: mesh.positions().cast(),
+            claims: buffers.claims[parity].view(),
+            next_claims: buffers.claims[1 - parity].view(),
+            stamps: buffers.stamps.view(),
+            illegal: buffers.illegal(parity),
+            next_illegal: buffers.illegal(1 - parity),
+            deferred: buffers.deferred.view(),
+            also: also.map(EdgeList::edges),
+            also_count: also.map(EdgeList::count),
+            words: buffers.words.view(),
+            report: tally.words(),
+            also_limit: also.map_or(0, EdgeList::limit),
+            scope: scope as u32,
+            parity: parity as u32,
+        };
+        recording.dispatch(&self.advance_edges, self.groups, &arguments);
+        self.test_deferred(recording, round, 1 - parity);
+    }
+
+    fn tail(&self, recording: &mut Recording, round: Round<'_>, least: u32) {
+        let Round { mesh, buffers, also, tally, scope } = round;
         let arguments = FlipTailArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            edges: list.edges(),
-            edge_count: list.count(),
+            claims_0: buffers.claims[0].view(),
+            claims_1: buffers.claims[1].view(),
+            stamps: buffers.stamps.view(),
+            illegal_0: buffers.illegal(0),
+            illegal_1: buffers.illegal(1),
             also: also.map(EdgeList::edges),
             also_count: also.map(EdgeList::count),
-            illegal: buffers.illegal.view(),
-            claims: buffers.claims.view(),
-            stamps: buffers.stamps.view(),
             words: buffers.words.view(),
             report: tally.words(),
+            also_limit: also.map_or(0, EdgeList::limit),
             scope: scope as u32,
             least,
             most: TAIL_ROUNDS,
             most_tests: TAIL_TESTS,
-            also_limit: also.map_or(0, EdgeList::limit),
         };
         recording.dispatch(&self.flip_tail, [1, 1, 1], &arguments);
     }

@@ -8,14 +8,14 @@ use polder_mesh::{GhostMesh, NONE, next, prev};
 /// The mark of an illegal edge that was flipped.
 pub const WON: u32 = 1 << 31;
 
-/// What kernels keep between rounds, by triangle.
+/// What kernels keep, by triangle.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scratch {
-    /// The least priority that claims it; [`NONE`] between rounds.
+    /// The least priority that claims it, else [`NONE`].
     pub claims: Vec<u32>,
     /// Four times the last round that flipped it, and the edge along which it was.
     pub stamps: Vec<u32>,
-    /// The number of this round, from 1.
+    /// The number of the last round that flipped.
     pub round: u32,
 }
 
@@ -41,7 +41,6 @@ pub fn test_edges(
     hull_alone: bool,
     scratch: &mut Scratch,
 ) -> (Vec<u32>, u64) {
-    scratch.round += 1;
     let mut taken: Vec<u32> =
         edges.iter().filter(|&&h| !mesh.is_deleted((h / 3) as usize)).map(|&h| h.min(mesh.twin(h))).collect();
     let mut listed = vec![false; 3 * mesh.slots()];
@@ -60,6 +59,7 @@ pub fn test_edges(
 /// Step 3, first half: flips what got both its triangles, marks it [`WON`], and returns the number of flips. Links around
 /// the flips keep their names from before the round.
 pub fn flip_edges(mesh: &mut GhostMesh, scratch: &mut Scratch, illegal: &mut [u32]) -> u64 {
+    scratch.round += 1;
     let mut flips = 0;
     for h in illegal {
         if scratch.claims[(*h / 3) as usize] != priority(*h) {
@@ -124,28 +124,47 @@ pub fn relink_edges(mesh: &mut GhostMesh, scratch: &mut Scratch, illegal: &[u32]
     handed
 }
 
-/// Whole rounds, at most `most`, while there are edges and fewer than `least` of them (four times as many after the first):
-/// the edges left, and what was done.
+/// Steps 1 and 2 of a round over every edge of the mesh, or every ghost edge.
+pub fn test_mesh(mesh: &GhostMesh, positions: &[DVec2], hull_alone: bool, scratch: &mut Scratch) -> (Vec<u32>, u64) {
+    let edges: Vec<u32> = (0..3 * mesh.slots() as u32).filter(|&h| mesh.twin(h) != NONE && h < mesh.twin(h)).collect();
+    test_edges(mesh, positions, &edges, hull_alone, scratch)
+}
+
+/// Step 3, second half, and steps 1 and 2 of the next round: the edges handed on, those of them that are illegal, and the
+/// number of tests.
+pub fn advance_edges(
+    mesh: &mut GhostMesh,
+    positions: &[DVec2],
+    illegal: &[u32],
+    hull_alone: bool,
+    scratch: &mut Scratch,
+) -> (Vec<u32>, Vec<u32>, u64) {
+    let handed = relink_edges(mesh, scratch, illegal);
+    let (next, tests) = test_edges(mesh, positions, &handed, hull_alone, scratch);
+    (handed, next, tests)
+}
+
+/// Rounds from claims to claims, at most `most`, while there are illegal edges and fewer than `least` of them (four times as
+/// many after the first): the illegal edges left, and what was done.
 pub fn flip_tail(
     mesh: &mut GhostMesh,
     positions: &[DVec2],
-    edges: &[u32],
+    illegal: &[u32],
     hull_alone: bool,
     [least, most]: [usize; 2],
     scratch: &mut Scratch,
 ) -> (Vec<u32>, FlipReport) {
-    let mut edges = edges.to_vec();
+    let mut illegal = illegal.to_vec();
     let mut report = FlipReport::default();
-    while !edges.is_empty()
-        && edges.len() < if report.rounds == 0 { least } else { least.saturating_mul(4) }
-        && report.rounds < most as u64
-    {
-        let (mut illegal, tests) = test_edges(mesh, positions, &edges, hull_alone, scratch);
+    let mut limit = least;
+    while !illegal.is_empty() && illegal.len() < limit && report.rounds < most as u64 {
+        limit = least.saturating_mul(4);
         let flips = flip_edges(mesh, scratch, &mut illegal);
-        edges = relink_edges(mesh, scratch, &illegal);
+        let (_, next, tests) = advance_edges(mesh, positions, &illegal, hull_alone, scratch);
+        illegal = next;
         report += FlipReport { rounds: 1, flips, tests };
     }
-    (edges, report)
+    (illegal, report)
 }
 
 fn mark(mesh: &mut GhostMesh, h: u32, yes: bool) {
