@@ -9,6 +9,7 @@ layout(local_size_x_id = 0, local_size_x = 256) in;
 #include "groups.glsl"
 
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_shuffle_relative : require
 
 layout(push_constant, std430) uniform Args {
     ReadU32 colors;
@@ -30,10 +31,24 @@ shared uint found[2u * ROWS * WORDS];
 
 void note(uint place, uvec4 ballot) {
     if (subgroupElect()) {
-        for (uint k = 0u; k < gl_SubgroupSize; k += 32u) {
-            atomicOr(found[place + k / 32u], ballot[k / 32u] << (rank_in_group() & 31u));
+        if (gl_SubgroupSize == 32u) {
+            found[place] = ballot.x;
+        } else {
+            for (uint k = 0u; k < gl_SubgroupSize; k += 32u) {
+                atomicOr(found[place + k / 32u], ballot[k / 32u] << (rank_in_group() & 31u));
+            }
         }
     }
+}
+
+// The colors of the pixels left and right of x, of which the left one is the right one of the invocation before.
+uvec2 pair(uint x, uint y) {
+    uint east = color_of(colors, x, y, width, height);
+    uint west = subgroupShuffleUp(east, 1u);
+    if (gl_SubgroupInvocationID == 0u) {
+        west = color_of(colors, x - 1u, y, width, height);
+    }
+    return uvec2(west, east);
 }
 
 void main() {
@@ -41,41 +56,42 @@ void main() {
         found[i] = 0u;
     }
     barrier();
-    uint x = gl_WorkGroupID.x * WORKGROUP + rank_in_group();
-    uint first_row = gl_WorkGroupID.y * ROWS;
+    uvec2 first = gl_WorkGroupID.xy * uvec2(WORKGROUP, ROWS);
+    uint x = first.x + rank_in_group();
     uint count = sites.at[0];
     uint necks_here = 0u;
     uint ghosts_here = 0u;
     uint bad_corner = GHOST;
     uint bad_pixel = GHOST;
-    uint south_west = color_of(colors, x - 1u, first_row - 1u, width, height);
-    uint south_east = color_of(colors, x, first_row - 1u, width, height);
+    bool at_border = first.x == 0u || first.y == 0u || first.x + WORKGROUP > width || first.y + ROWS > height;
+    uvec2 south = pair(x, first.y - 1u);
     [[unroll]] for (uint row = 0u; row < ROWS; row++) {
-        uint y = first_row + row;
-        uint north_west = color_of(colors, x - 1u, y, width, height);
-        uint north_east = color_of(colors, x, y, width, height);
-        if (x < width && y < height && north_east >= count) {
+        uint y = first.y + row;
+        uvec2 north = pair(x, y);
+        if (north.y >= count && x < width && y < height) {
             bad_pixel = min(bad_pixel, y * width + x);
         }
-        uint borders = uint(south_west != south_east) + uint(south_east != north_east) + uint(north_east != north_west)
-            + uint(north_west != south_west);
-        bool inside = x <= width && y <= height;
-        bool repeated = south_west == north_east || south_east == north_west;
-        bool is_four = inside && borders == 4u && !repeated;
-        bool is_vertex = inside && (borders == 3u || is_four);
-        if (inside && borders == 4u && repeated) {
-            if (south_west == north_east && south_east == north_west) {
+        // Beyond the grid all colors are one.
+        uint borders = uint(south.x != south.y) + uint(south.y != north.y) + uint(north.y != north.x)
+            + uint(north.x != south.x);
+        bool is_four = borders == 4u;
+        if (is_four && (south.x == north.y || south.y == north.x)) {
+            is_four = false;
+            if (south.x == north.y && south.y == north.x) {
                 bad_corner = min(bad_corner, y * (width + 1u) + x);
             } else {
                 necks_here++;
             }
         }
+        bool is_vertex = is_four || borders == 3u;
         // At the border of the grid two pixels lie outside.
-        ghosts_here += uint(is_vertex && (x == 0u || y == 0u || x == width || y == height));
-        note(row * WORDS + rank_in_group() / 32u, subgroupBallot(is_vertex));
-        note(ROWS * WORDS + row * WORDS + rank_in_group() / 32u, subgroupBallot(is_four));
-        south_west = north_west;
-        south_east = north_east;
+        if (at_border && is_vertex && (x == 0u || y == 0u || x == width || y == height)) {
+            ghosts_here++;
+        }
+        uint word = row * WORDS + rank_in_group() / 32u;
+        note(word, subgroupBallot(is_vertex));
+        note(ROWS * WORDS + word, subgroupBallot(is_four));
+        south = north;
     }
     uint sum = subgroupAdd(necks_here);
     uint ghosts_sum = subgroupAdd(ghosts_here);
@@ -97,7 +113,7 @@ void main() {
     }
     barrier();
     for (uint i = rank_in_group(); i < ROWS * WORDS; i += WORKGROUP) {
-        uint y = first_row + i / WORDS;
+        uint y = first.y + i / WORDS;
         uint word = gl_WorkGroupID.x * WORDS + i % WORDS;
         if (y <= height && word < words_in_row(width)) {
             uint to = y * words_in_row(width) + word;

@@ -110,10 +110,11 @@ impl Shader for DualizeCount {
             "GroupNonUniform",
             "GroupNonUniformArithmetic",
             "GroupNonUniformBallot",
+            "GroupNonUniformShuffleRelative",
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "768c6e867db3f3ef677fe7ff794e8ef2f8be0f4bb7b98082a6517b88af4d0be6",
+        source_hash: "06818d3db4b309c7a7c69ab31de0e600cfb31fbbfc9266b5a2a92833b996e057",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -188,7 +189,7 @@ impl Shader for DualizeWrite {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["GroupNonUniform", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "5690c1fbfde59451d104022b5efac082b76443bd2d40bc44b1d02fdc534ebd2f",
+        source_hash: "1e50a8d0cf4b767ef35b1de5e60cb4460e1bb69f8e2de898ab38e02ed90399f0",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
