@@ -13,6 +13,7 @@ device or resources are at fault, or polder itself; 4 cancelled.
 Examples:
   polder triangulate coast.poly -o coast.svg      look at it
   polder triangulate coast.poly -o coast.ele      for programs that read Triangle's files
+  polder triangulate coast.poly -o land.svg --domain    the land alone, without sea and lakes
   polder verify coast.poly coast.ele              check it, or any other tool's mesh
   polder generate segments 1000000 -o big.pslg    make a hard one";
 
@@ -131,6 +132,11 @@ pub(crate) struct TriangulateArgs {
     /// The format of the output, where its extension does not say: ele, tri, obj, ply, vtk or svg
     #[arg(long, value_name = "FORMAT")]
     pub(crate) to: Option<MeshFormat>,
+
+    /// Leave out what lies outside all outlines, and the holes that a .poly names: what segments do not hold back is
+    /// eaten from the hull and from each hole
+    #[arg(long)]
+    pub(crate) domain: bool,
 
     #[command(flatten)]
     pub(crate) way: WayArgs,
@@ -306,6 +312,10 @@ pub(crate) struct DrawArgs {
 
     #[command(flatten)]
     pub(crate) input: InputArgs,
+
+    /// With final: leave out what lies outside all outlines, and the holes
+    #[arg(long)]
+    pub(crate) domain: bool,
 
     /// Where the picture goes: an .svg or .png file
     #[arg(long, short, value_name = "PICTURE")]

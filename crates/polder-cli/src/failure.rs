@@ -31,6 +31,19 @@ impl Failure {
         Self::new("io", format!("{name}: {error}"))
     }
 
+    /// What the library says of holes, which files number from `first`.
+    pub(crate) fn of_domain(error: polder::Error, first: u32) -> Self {
+        let (kind, message) = (error.kind(), error.to_string());
+        match error {
+            polder::Error::SeedOnConstraint { seed } => {
+                let hole = seed as u64 + u64::from(first);
+                let message = format!("hole {hole} lies on a segment, between regions");
+                Self::new(kind, message).with("hole", hole)
+            }
+            _ => Self::new(kind, message),
+        }
+    }
+
     /// An error of the library. Segments are named as the file numbers them, which begins with `first`.
     pub(crate) fn of_library(error: polder::Error, first: u32) -> Self {
         let kind = error.kind();
@@ -78,6 +91,7 @@ impl Failure {
             | "index_out_of_range"
             | "non_finite_coordinate"
             | "crossing_constraints"
+            | "seed_on_constraint"
             | "too_large" => 1,
             "cancelled" => 4,
             _ => 3,

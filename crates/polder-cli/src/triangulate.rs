@@ -16,10 +16,14 @@ pub(crate) fn triangulate(job: &Job, args: &TriangulateArgs) -> Result<ExitCode,
         usage("--neigh, --edge and --node stand beside an .ele file");
     }
     let input = job.read(&args.input)?;
-    if input.has_holes_or_closed_outline() {
-        job.say("polder: holes and outlines do not bound the mesh yet: the whole convex hull is triangulated");
+    if !args.domain && input.has_holes_or_closed_outline() {
+        job.say("polder: the whole convex hull is triangulated; --domain keeps to outlines and holes");
     }
-    let Output { triangulation, report } = compute(job, &input, &args.way)?;
+    let mut output = compute(job, &input, &args.way)?;
+    if args.domain {
+        keep_domain(job, &input, &mut output)?;
+    }
+    let Output { triangulation, report } = output;
 
     let points = input.pslg.points();
     let main: Box<WriteTo> = match to {
@@ -55,6 +59,28 @@ pub(crate) fn triangulate(job: &Job, args: &TriangulateArgs) -> Result<ExitCode,
         job.say(&summary(&report));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Takes away the exterior and the holes.
+pub(crate) fn keep_domain(job: &Job, input: &Input, output: &mut Output) -> Result<(), Failure> {
+    job.stage("keeping the domain");
+    let domain = polder::regions::domain(input.pslg.points(), &output.triangulation, &input.holes);
+    let domain = domain.map_err(|error| Failure::of_domain(error, input.first))?;
+    for (i, hole) in domain.holes.iter().enumerate() {
+        let nothing = match hole {
+            None => "lies in no triangle",
+            Some(region) if domain.regions.depth(*region) == 0 => "lies outside all outlines",
+            Some(_) => continue,
+        };
+        job.say(&format!("polder: hole {} {nothing}", i as u64 + u64::from(input.first)));
+    }
+    if domain.triangles.is_empty() && !output.triangulation.triangles().is_empty() {
+        job.say("polder: no segments close an outline, so nothing is left");
+    }
+    output.triangulation = domain.triangulation;
+    output.report.triangles = domain.triangles.len();
+    output.report.constraints.constrained_edges = output.triangulation.edges().filter(|e| e.constrained).count();
+    Ok(())
 }
 
 /// One sentence on what came out.

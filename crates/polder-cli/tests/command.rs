@@ -431,3 +431,44 @@ fn devices_without_vulkan_are_an_error_in_one_line() {
     let error: Value = serde_json::from_str(String::from_utf8(error.stderr).unwrap().lines().last().unwrap()).unwrap();
     assert_eq!(error["kind"], "unsupported");
 }
+
+/// A square with a square hole in it, and a point far off.
+const FRAME: &str = "9 2 0 0\n1 0 0\n2 9 0\n3 9 9\n4 0 9\n5 3 3\n6 6 3\n7 6 6\n8 3 6\n9 20 5\n\
+    8 0\n1 1 2\n2 2 3\n3 3 4\n4 4 1\n5 5 6\n6 6 7\n7 7 8\n8 8 5\n";
+
+#[test]
+fn the_domain_has_neither_exterior_nor_holes() {
+    let holes = |text: &str| format!("{FRAME}{text}");
+    let folder = folder(&[
+        ("hole.poly", &holes("1\n1 4 5\n")),
+        ("none.poly", &holes("0\n")),
+        ("odd.poly", &holes("3\n1 4 4\n2 15 5\n3 -9 -9\n")),
+        ("on.poly", &holes("2\n1 4 4\n2 4 3\n")),
+        ("box.poly", BOX),
+    ]);
+    let dir = folder.path();
+    let triangles = |args: &str| {
+        let run = ok(dir, &format!("triangulate {args} -o out.ele --report json"));
+        let report: Value = serde_json::from_str(&run.text()).unwrap();
+        let ele = fs::read_to_string(dir.join("out.ele")).unwrap();
+        let count: u64 = ele.split_whitespace().next().unwrap().parse().unwrap();
+        assert_eq!(report["triangles"], count);
+        (count, run.err)
+    };
+    let (whole, said) = triangles("hole.poly");
+    assert!(whole == 11 && said.contains("--domain"), "{whole} {said}");
+    assert_eq!(triangles("hole.poly --domain"), (8, String::new()));
+    assert_eq!(triangles("none.poly --domain").0, 10);
+    let (count, said) = triangles("odd.poly --domain");
+    assert_eq!(count, 8);
+    assert!(said.contains("hole 2 lies outside all outlines") && said.contains("hole 3 lies in no triangle"), "{said}");
+    let (count, said) = triangles("box.poly --domain");
+    assert!(count == 0 && said.contains("nothing is left"), "{said}");
+
+    let run = polder(dir, "triangulate on.poly -o out.ele --domain --error-format json");
+    assert_eq!((run.code, run.error()["kind"].clone()), (1, "seed_on_constraint".into()));
+    assert_eq!(run.error()["hole"], 2);
+    ok(dir, "draw final hole.poly --domain -o out.svg");
+    assert!(fs::read_to_string(dir.join("out.svg")).unwrap().contains("8 triangles"));
+    assert_eq!(polder(dir, "draw shifted hole.poly --domain -o out.svg").code, 2);
+}

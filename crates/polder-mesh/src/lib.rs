@@ -6,6 +6,8 @@
 //! | [`GhostMesh`] | the working mesh of the stages: triangles, links, ghost triangles around the hull |
 //! | [`Triangulation`] | the output: triangles in canonical order, neighbors, constrained edges, what became of every point and constraint |
 //!
+//! [`Regions`] are what constrained edges divide a triangulation into.
+//!
 //! This crate knows no predicates: topology takes ids, and whoever calls it has decided the geometry before.
 //!
 //! # Conventions
@@ -23,6 +25,7 @@ mod ghost;
 mod ids;
 mod monitor;
 mod pslg;
+mod regions;
 mod text;
 mod triangulation;
 
@@ -34,6 +37,7 @@ pub use ghost::{DELETED, GHOST, GhostMesh, NONE, next, prev, twin_code};
 pub use ids::{ConstraintId, EdgeId, TriangleId, VertexId};
 pub use monitor::{Cancelled, Monitor, Progress};
 pub use pslg::{Constraint, Pslg};
+pub use regions::Regions;
 pub use triangulation::{Edge, Parts, Triangulation};
 
 pub use glam::DVec2;

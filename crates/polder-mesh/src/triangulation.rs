@@ -110,6 +110,27 @@ impl Triangulation {
         Ok(Self::from_slots(triangles.len(), get, parts))
     }
 
+    /// The triangles for which `keep` says so, in the same order, and which these were.
+    ///
+    /// Vertices, chains and constrained edges are as before, also those that no triangle has any more. Where triangles
+    /// are gone there is no neighbor, as at the hull; [`hull`](Self::hull) and [`star`](Self::star) then tell one border and
+    /// one fan of several.
+    pub fn filter(&self, keep: impl Fn(TriangleId) -> bool) -> (Self, Vec<TriangleId>) {
+        let kept: Vec<TriangleId> = (0..self.triangles.len() as u32).map(TriangleId).filter(|&t| keep(t)).collect();
+        let mut place = vec![NONE; self.triangles.len()];
+        kept.iter().enumerate().for_each(|(i, t)| place[t.index()] = i as u32);
+        let renamed = |n: u32| place.get(n as usize).copied().unwrap_or(NONE);
+        let filtered = Self {
+            triangles: kept.iter().map(|t| self.triangles[t.index()]).collect(),
+            neighbors: kept.iter().map(|t| self.neighbors[t.index()].map(renamed)).collect(),
+            constrained: kept.iter().map(|t| self.constrained[t.index()]).collect(),
+            representatives: self.representatives.clone(),
+            chains: self.chains.clone(),
+            half_edges: OnceLock::new(),
+        };
+        (filtered, kept)
+    }
+
     /// The corners of each triangle, counterclockwise, smallest first, sorted.
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles

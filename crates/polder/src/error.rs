@@ -26,6 +26,18 @@ pub enum Error {
         /// Whether there are more than the pairs listed.
         truncated: bool,
     },
+    /// A hole or label of a region does not say which region it means.
+    #[error("seed {seed}: it lies on a constrained edge, between regions")]
+    SeedOnConstraint {
+        /// Index of the first such seed.
+        seed: usize,
+    },
+    /// A coordinate of a hole or label of a region is NaN or infinite.
+    #[error("seed {seed}: a coordinate is not a finite number")]
+    SeedNotFinite {
+        /// Index of the first such seed.
+        seed: usize,
+    },
     /// What was asked for does not exist here.
     #[error("{what}")]
     Unsupported {
@@ -55,13 +67,15 @@ pub enum Error {
 
 impl Error {
     /// A stable word for programs: `index_out_of_range`, `non_finite_coordinate`, `crossing_constraints`, `too_large`,
-    /// `unsupported`, `bound_exceeded`, `internal` or `cancelled`.
+    /// `seed_on_constraint`, `unsupported`, `bound_exceeded`, `internal` or `cancelled`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Input(MeshError::NonFiniteCoordinate { .. }) => "non_finite_coordinate",
             Self::Input(MeshError::IndexOutOfRange { .. }) => "index_out_of_range",
             Self::Input(MeshError::TooLarge { .. }) => "too_large",
             Self::CrossingConstraints { .. } => "crossing_constraints",
+            Self::SeedOnConstraint { .. } => "seed_on_constraint",
+            Self::SeedNotFinite { .. } => "non_finite_coordinate",
             Self::Unsupported { .. } => "unsupported",
             Self::BoundExceeded { .. } => "bound_exceeded",
             Self::Input(_) | Self::Internal { .. } => "internal",

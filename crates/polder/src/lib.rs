@@ -22,7 +22,8 @@
 //! 4. **It never panics or hangs.** Bad input is a typed [`Error`] with the index at fault; every loop has a bound;
 //!    [`Options::cancel`] stops it.
 //!
-//! The triangulation covers the convex hull of the points. No points, one, two, all equal, or all on one line: a valid
+//! The triangulation covers the convex hull of the points; [`regions`] says what lies inside an outline, and leaves out
+//! the rest. No points, one, two, all equal, or all on one line: a valid
 //! empty triangulation.
 //!
 //! # Ways
@@ -35,6 +36,7 @@ mod cpu;
 mod error;
 mod options;
 mod reference;
+pub mod regions;
 mod report;
 mod stages;
 pub mod verify;

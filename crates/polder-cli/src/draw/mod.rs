@@ -25,6 +25,9 @@ pub(crate) fn draw(job: &Job, args: &DrawArgs) -> Result<ExitCode, Failure> {
         _ if args.output == Path::new(DASH) => false,
         _ => usage("the picture must be an .svg or .png file"),
     };
+    if args.domain && args.stage != Stage::Final {
+        usage("--domain is for the final triangulation");
+    }
     let input = job.read(&args.input)?;
     let options = Options {
         grid: args.grid,
@@ -35,7 +38,10 @@ pub(crate) fn draw(job: &Job, args: &DrawArgs) -> Result<ExitCode, Failure> {
     let failure = |error| Failure::of_library(error, input.first);
     let mut svg = Vec::new();
     let drawn = if args.stage == Stage::Final {
-        let output = polder::triangulate(&input.pslg, &options).map_err(failure)?;
+        let mut output = polder::triangulate(&input.pslg, &options).map_err(failure)?;
+        if args.domain {
+            crate::triangulate::keep_domain(job, &input, &mut output)?;
+        }
         polder_io::svg::write_svg(&mut svg, input.pslg.points(), &output.triangulation)
     } else {
         job.stage("triangulating");

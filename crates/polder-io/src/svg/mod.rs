@@ -68,7 +68,14 @@ pub fn write_svg(out: &mut dyn Write, points: &[DVec2], triangulation: &Triangul
     let mut picture = Picture::new(frame);
     let of = |ids: &[u32]| ids.iter().map(|&v| points[v as usize]).collect::<Vec<_>>();
     let hull: Vec<_> = triangulation.hull().iter().map(|v| v.0).collect();
-    picture.polygon(&of(&hull), colors::LAND);
+    let border = triangulation.neighbors().iter().flatten().filter(|&&n| n == polder_mesh::NONE).count();
+    if border == hull.len() {
+        picture.polygon(&of(&hull), colors::LAND);
+    } else {
+        // Several borders, or one that meets itself.
+        let land = triangulation.triangles().iter().map(|corners| corners.map(|v| points[v as usize]));
+        picture.triangles(land, colors::LAND);
+    }
     let plain = triangulation.edges().filter(|e| !e.constrained);
     picture.lines(plain.map(|e| e.vertices.map(|v| points[v.index()])), colors::EDGE, widths.edge);
     let constrained = constrained_edges(triangulation);
