@@ -5,11 +5,13 @@
 // - `ReadPoints positions;` among its arguments (`View<[u32; 4]>` in Rust: the bits of a `DVec2`), and
 //   `Point p = point_at(positions, v);`. A `Point` is bits: compare it by `same_point` and `compare_points` alone.
 // - Specialization constant 1 is `ARITHMETIC` and is declared here; a kernel's own constants are numbered from 2.
-//   FAST: f64 with a proven error bound, and f64 where it is exact; little code and few registers; what it does not know it
-//   says is UNDECIDED. EXACT: the same, then integers of any size for the rest. INTEGERS: no f64 is executed at all.
-//   EXACT and INTEGERS know every sign, for all finite coordinates. They never return UNDECIDED.
-// - An item of which a predicate is UNDECIDED writes nothing, but appends itself to a list. The same kernel compiled as
-//   EXACT then runs over that list.
+//   EXACT: f64 with a proven error bound, and f64 where it is exact; then integers of any size for the rest. INTEGERS: no
+//   f64 is executed at all. Both know every sign, for all finite coordinates, and never return UNDECIDED. This is how
+//   kernels are made for users, so they need not ask for UNDECIDED.
+// - FAST is EXACT without its integers: half the time to compile, and UNDECIDED for what the filter leaves. A kernel may
+//   put such items on a list that it then works off, compiled as EXACT. Measured, that was slower than EXACT at once for
+//   every kind of points: integers behind the filter cost a tenth of a test where they are not needed, a second dispatch
+//   costs more, and the list costs once more where they are.
 // - Every call is inlined, and the integers are long: call from few places, in a loop rather than one after the other.
 // - A kernel that includes this file is compiled a second time with NO_FLOAT64 defined, without the capability Float64:
 //   ARITHMETIC is INTEGERS there whatever the constant says. On the host `Arithmetic::kernel` takes the right one.

@@ -182,9 +182,8 @@ fn predicates_without_f64(device: &Device) {
     engine.upload(positions.view(), &corners).unwrap();
     engine.upload(input.view(), &quadruples).unwrap();
     let signs = Signs::new(device, arithmetic).unwrap();
-    let buffers = signs.buffers(quadruples.len()).unwrap();
     let mut recording = Recording::new(device);
-    signs.record_must_flip(&mut recording, positions.view(), input.view(), output.view(), &buffers).unwrap();
+    signs.record_must_flip(&mut recording, positions.view(), input.view(), output.view()).unwrap();
     engine.run(&recording, &RunOptions::default()).unwrap();
     let expected = polder_flip::reference::must_flip_signs(&corners, &quadruples).unwrap();
     assert_eq!(expected, [1, 0, 0]);

@@ -71,7 +71,7 @@ impl Shader for CheckTriangles {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "346d6060db597ae47488deb9992e8882b7fa56f4be877ca6610027c04f76a4c1",
+        source_hash: "c145d2e9e8fd073c2bf7eb0d3c251101c2745bc143f948db8813f85153af2d6e",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

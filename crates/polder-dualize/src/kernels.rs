@@ -274,7 +274,7 @@ impl Shader for PinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "0275602f91e3109d8b03b0694f7b2150c67549f57afc99fe8b47e35943143546",
+        source_hash: "9e2e16fa92b6fd2f0be4e0b8680f5bb6e65302fc503589d161cd692ee43796eb",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -365,7 +365,7 @@ impl Shader for PinTriangles {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "b287070da0e1a26901baab82e18de7c510d10c815531304cab51e2f88b810fdd",
+        source_hash: "59003b979f68c6ab55e2a5dc223af6865b0003833425d8df0344caa8596febab",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -557,7 +557,7 @@ impl Shader for TakeoutCut {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "607ea773f56e154c3958115994dbd5de87ce11dcad8ed1649be59c47b572afa0",
+        source_hash: "b939503decf247726cc0eb2214d09ffe057183d2d96037d01778b3f0ad25b05e",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -888,7 +888,7 @@ impl Shader for UnpinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "199b0979044c25d8c2751faf6299a5ab89956f95a9b40cc4e9fac66ddbfe7ead",
+        source_hash: "8501477c36826b1ab3205aab7586d5d75202685af0ff9f234f83df5e7af0b0d4",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

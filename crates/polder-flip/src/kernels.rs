@@ -81,7 +81,7 @@ impl Shader for AdvanceEdges {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "9709e49c0a2305bd6e77b0ac667be86b937846dacf28113b03b0a0416329438b",
+        source_hash: "3fbdf7f6142d94a6da72f8d2036ffe65b37e56dfbda81bdb57088bf7066babbc",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -258,7 +258,7 @@ impl Shader for FlipTail {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "f1649b2e99635d33bb1b1b6c05d045973e40e7d3514563e2203884be2eab2d3b",
+        source_hash: "ee64e3fdcb2ee02b334c68286781c82ccc9254875361055a2d357be8f790bfe5",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -283,8 +283,8 @@ impl Shader for FlipTail {
     }
 }
 
-/// Whether the edge bc of the triangles abc and dcb must be flipped to ad, for each quadruple of points: 1 or 0. What is
-/// undecided is put on a list.
+/// Whether the edge bc of the triangles abc and dcb must be flipped to ad, for each quadruple of points: 1 or 0; or
+/// UNDECIDED, where only the filter is asked.
 #[derive(Debug, Clone, Copy)]
 pub enum MustFlipSigns {}
 
@@ -297,16 +297,8 @@ pub struct MustFlipSignsArgs<'a> {
     pub quadruples: View<'a, u32>,
     /// written
     pub signs: View<'a, u32>,
-    /// read, may be left out
-    pub items: Option<View<'a, u32>>,
-    /// read, may be left out
-    pub counter: Option<View<'a, u32>>,
-    /// written
-    pub deferred: View<'a, u32>,
-    /// read and written
-    pub deferred_count: View<'a, u32>,
     /// a value
-    pub limit: u32,
+    pub count: u32,
 }
 
 impl Shader for MustFlipSigns {
@@ -316,15 +308,11 @@ impl Shader for MustFlipSigns {
         name: "must_flip_signs",
         words: include_spirv!("../spv/must_flip_signs.spv"),
         without_float64: Some(include_spirv!("../spv/must_flip_signs.integers.spv")),
-        argument_bytes: 60,
+        argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "positions", offset: 0, access: Access::Read },
             BufferArgument { name: "quadruples", offset: 8, access: Access::Read },
             BufferArgument { name: "signs", offset: 16, access: Access::Write },
-            BufferArgument { name: "items", offset: 24, access: Access::Read },
-            BufferArgument { name: "counter", offset: 32, access: Access::Read },
-            BufferArgument { name: "deferred", offset: 40, access: Access::Write },
-            BufferArgument { name: "deferred_count", offset: 48, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -332,7 +320,7 @@ impl Shader for MustFlipSigns {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "c07e5d4a083aec80deafb6dba670cbc5fe110a4b9e4af1e669eaa43cbff896ec",
+        source_hash: "5f651180c5a982be9e9a63807838b60bdd0d27633bcf719184b01938dd8d0e01",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -340,15 +328,11 @@ impl Shader for MustFlipSigns {
         encoder.buffer(0, args.positions);
         encoder.buffer(8, args.quadruples);
         encoder.buffer(16, args.signs);
-        encoder.optional(24, args.items);
-        encoder.optional(32, args.counter);
-        encoder.buffer(40, args.deferred);
-        encoder.buffer(48, args.deferred_count);
-        encoder.value(56, args.limit);
+        encoder.value(24, args.count);
     }
 }
 
-/// The orientation of each triple of points: the bits of -1, 0 or 1. What is undecided is put on a list.
+/// The orientation of each triple of points: the bits of -1, 0 or 1; of UNDECIDED too, where only the filter is asked.
 #[derive(Debug, Clone, Copy)]
 pub enum Orient2dSigns {}
 
@@ -361,16 +345,8 @@ pub struct Orient2dSignsArgs<'a> {
     pub triples: View<'a, u32>,
     /// written
     pub signs: View<'a, u32>,
-    /// read, may be left out
-    pub items: Option<View<'a, u32>>,
-    /// read, may be left out
-    pub counter: Option<View<'a, u32>>,
-    /// written
-    pub deferred: View<'a, u32>,
-    /// read and written
-    pub deferred_count: View<'a, u32>,
     /// a value
-    pub limit: u32,
+    pub count: u32,
 }
 
 impl Shader for Orient2dSigns {
@@ -380,15 +356,11 @@ impl Shader for Orient2dSigns {
         name: "orient2d_signs",
         words: include_spirv!("../spv/orient2d_signs.spv"),
         without_float64: Some(include_spirv!("../spv/orient2d_signs.integers.spv")),
-        argument_bytes: 60,
+        argument_bytes: 28,
         buffers: &[
             BufferArgument { name: "positions", offset: 0, access: Access::Read },
             BufferArgument { name: "triples", offset: 8, access: Access::Read },
             BufferArgument { name: "signs", offset: 16, access: Access::Write },
-            BufferArgument { name: "items", offset: 24, access: Access::Read },
-            BufferArgument { name: "counter", offset: 32, access: Access::Read },
-            BufferArgument { name: "deferred", offset: 40, access: Access::Write },
-            BufferArgument { name: "deferred_count", offset: 48, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -396,7 +368,7 @@ impl Shader for Orient2dSigns {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "6ce5fe9b51ac77f341020cf442a626d967e7fb67410d5b6e6dcb550aad14b1c4",
+        source_hash: "d8831a4a64ab6a33e593f74cf51ef00ac54b29fb123c5322fa5d1e742ec873a3",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -404,11 +376,7 @@ impl Shader for Orient2dSigns {
         encoder.buffer(0, args.positions);
         encoder.buffer(8, args.triples);
         encoder.buffer(16, args.signs);
-        encoder.optional(24, args.items);
-        encoder.optional(32, args.counter);
-        encoder.buffer(40, args.deferred);
-        encoder.buffer(48, args.deferred_count);
-        encoder.value(56, args.limit);
+        encoder.value(24, args.count);
     }
 }
 
@@ -549,7 +517,7 @@ impl Shader for TestEdges {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "41aed833c738e1ddf390818e082c87a6624c82908472209b6eeeac772fd8dffd",
+        source_hash: "2681c06e84bd7e204a64c369ddefe6c9fec4f4909544c34432d4a26b43cffd36",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -635,7 +603,7 @@ impl Shader for TestMesh {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "9c0f84f60e01746740cc9f9daca3f0000278d86f6aa7f174895962ca83f265a2",
+        source_hash: "17455eaeba304173620c03999ce42d51ada6cd6b71201f71d05f019b5a4f2829",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

@@ -3,22 +3,22 @@
 //! The shaders ask `orient2d` and `must_flip` of `include/predicates.glsl`. They give the signs of
 //! [`polder_predicates`] on every device, in one of two ways:
 //!
-//! - [`Filtered`](Arithmetic::Filtered): f64 with a proven bound decides nearly all calls in a small kernel. What it leaves
-//!   goes on a list, and the same kernel with integers behind the filter runs over the list.
-//! - [`Integers`](Arithmetic::Integers): integers alone, in one kernel; no f64 operation at all.
+//! - [`Filtered`](Arithmetic::Filtered): f64 with a proven bound decides nearly all calls, integers decide the rest.
+//! - [`Integers`](Arithmetic::Integers): integers alone; no f64 operation at all.
+//!
+//! Each is one kernel, which decides every item. Filtering first and deciding the rest from a list, in a second kernel, was
+//! measured slower for every kind of points: integers behind the filter cost a tenth of a test where they are not needed.
 //!
 //! \[Shewchuk1997\] for the filter. Departures: the bound is four times as large, since Vulkan does not promise that f64
 //! operations are rounded correctly; what the filter leaves is not evaluated by expansions of f64, but by integers.
 
 use crate::kernels::{MustFlipSigns, MustFlipSignsArgs, Orient2dSigns, Orient2dSignsArgs};
 use glam::DVec2;
-use polder_vulkan::kernels::{DispatchSize, DispatchSizeArgs};
-use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, Recording, Shader, View, groups_for};
+use polder_vulkan::{Device, Error, Kernel, Recording, Shader, View, groups_for};
 
 /// The specialization constant of every kernel that asks predicates.
 const ARITHMETIC: &str = "ARITHMETIC";
-/// Its values: what the filter knows; what the filter or else integers know; what integers know.
-const FAST: u32 = 0;
+/// Its values: integers behind the filter, and alone.
 const EXACT: u32 = 1;
 const INTEGERS: u32 = 2;
 /// Invocations of a workgroup.
@@ -33,16 +33,6 @@ pub enum Arithmetic {
     Integers,
 }
 
-/// A kernel that asks predicates, compiled as an [`Arithmetic`] needs it.
-#[derive(Debug, Clone)]
-pub struct Kernels<S> {
-    /// Runs over all items. Without `rest` it decides all of them; else it writes nothing for an item of which a predicate
-    /// is undecided, but puts it on a list.
-    pub first: Kernel<S>,
-    /// Runs over that list right afterwards, and decides every item.
-    pub rest: Option<Kernel<S>>,
-}
-
 impl Arithmetic {
     /// [`Filtered`](Self::Filtered) where the device's self-test found its f64 to be that of a CPU.
     ///
@@ -53,49 +43,43 @@ impl Arithmetic {
         Ok(if device.self_test()?.passed() { Self::Filtered } else { Self::Integers })
     }
 
-    /// Compiles a kernel that includes `predicates.glsl`, with its other constants.
+    /// Compiles a kernel that includes `predicates.glsl`, with its other constants. It decides every item.
     ///
     /// # Errors
     ///
     /// Those of [`Kernel::new`]; one is that the shader does not include it.
-    pub fn kernels<S: Shader>(self, device: &Device, constants: &[(&'static str, u32)]) -> Result<Kernels<S>, Error> {
+    pub fn kernel<S: Shader>(self, device: &Device, constants: &[(&'static str, u32)]) -> Result<Kernel<S>, Error> {
         let with = |arithmetic| [constants, &[(ARITHMETIC, arithmetic)]].concat();
-        Ok(match self {
-            Self::Filtered => {
-                Kernels { first: Kernel::new(device, &with(FAST))?, rest: Some(Kernel::new(device, &with(EXACT))?) }
-            }
-            Self::Integers => Kernels { first: Kernel::without_float64(device, &with(INTEGERS))?, rest: None },
-        })
+        match self {
+            Self::Filtered => Kernel::new(device, &with(EXACT)),
+            Self::Integers => Kernel::without_float64(device, &with(INTEGERS)),
+        }
     }
+
+    /// The same for callers that know of a second kernel, for a list of what the first leaves; it leaves nothing.
+    ///
+    /// # Errors
+    ///
+    /// As [`Arithmetic::kernel`].
+    pub fn kernels<S: Shader>(self, device: &Device, constants: &[(&'static str, u32)]) -> Result<Kernels<S>, Error> {
+        Ok(Kernels { first: self.kernel(device, constants)?, rest: None })
+    }
+}
+
+/// A kernel that decides every item, and none.
+#[derive(Debug, Clone)]
+pub struct Kernels<S> {
+    /// Runs over all items.
+    pub first: Kernel<S>,
+    /// Would run over a list of undecided ones.
+    pub rest: Option<Kernel<S>>,
 }
 
 /// The predicates for many tuples of vertices.
 #[derive(Debug)]
 pub struct Signs {
-    device: Device,
-    orient2d: Kernels<Orient2dSigns>,
-    must_flip: Kernels<MustFlipSigns>,
-    dispatch_size: Kernel<DispatchSize>,
-}
-
-/// What [`Signs`] needs beside input and output: the list of tuples that the filter left.
-#[derive(Debug)]
-pub struct SignsBuffers {
-    deferred: Buffer<u32>,
-    counter: Buffer<u32>,
-    groups: Buffer<u32>,
-}
-
-impl SignsBuffers {
-    /// The tuples that the filter left, in the order of arrival.
-    pub fn deferred(&self) -> View<'_, u32> {
-        self.deferred.view()
-    }
-
-    /// One word: how many tuples the filter left, once the recording has run.
-    pub fn deferred_count(&self) -> View<'_, u32> {
-        self.counter.view()
-    }
+    orient2d: Kernel<Orient2dSigns>,
+    must_flip: Kernel<MustFlipSigns>,
 }
 
 impl Signs {
@@ -106,62 +90,24 @@ impl Signs {
     /// Those of the device.
     pub fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
         let constants = [("WORKGROUP", WORKGROUP)];
-        Ok(Self {
-            device: device.clone(),
-            orient2d: arithmetic.kernels(device, &constants)?,
-            must_flip: arithmetic.kernels(device, &constants)?,
-            dispatch_size: Kernel::new(device, &[])?,
-        })
-    }
-
-    /// What [`Signs::buffers`] will hold.
-    pub fn estimate(tuples: usize) -> Estimate {
-        Estimate::new()
-            .buffer::<u32>("deferred tuples", tuples)
-            .buffer::<u32>("deferred tuples, count", 4)
-            .buffer::<u32>("deferred tuples, groups", 4)
-    }
-
-    /// Memory for so many tuples.
-    ///
-    /// # Errors
-    ///
-    /// If it cannot be had.
-    pub fn buffers(&self, tuples: usize) -> Result<SignsBuffers, Error> {
-        Ok(SignsBuffers {
-            deferred: Buffer::new(&self.device, "deferred tuples", tuples)?,
-            counter: Buffer::new(&self.device, "deferred tuples, count", 4)?,
-            groups: Buffer::new(&self.device, "deferred tuples, groups", 4)?,
-        })
+        Ok(Self { orient2d: arithmetic.kernel(device, &constants)?, must_flip: arithmetic.kernel(device, &constants)? })
     }
 
     /// Writes the bits of [`orient2d_signs`](crate::reference::orient2d_signs). Vertices must have a position.
     ///
     /// # Errors
     ///
-    /// If output or buffers are shorter than the input.
+    /// If the output is shorter than the input.
     pub fn record_orient2d(
         &self,
         recording: &mut Recording,
         positions: View<'_, DVec2>,
         triples: View<'_, [u32; 3]>,
         signs: View<'_, u32>,
-        buffers: &SignsBuffers,
     ) -> Result<(), Error> {
-        let limit = check("orient2d_signs", triples.len(), signs, buffers)?;
-        let all = Orient2dSignsArgs {
-            positions: positions.cast(),
-            triples: triples.cast(),
-            signs,
-            items: None,
-            counter: None,
-            deferred: buffers.deferred.view(),
-            deferred_count: buffers.counter.view(),
-            limit,
-        };
-        let (items, counter) = (Some(buffers.deferred.view()), Some(buffers.counter.view()));
-        let list = Orient2dSignsArgs { items, counter, ..all };
-        self.record(recording, &self.orient2d, [all, list], buffers, limit);
+        let count = check("orient2d_signs", triples.len(), signs)?;
+        let arguments = Orient2dSignsArgs { positions: positions.cast(), triples: triples.cast(), signs, count };
+        recording.dispatch(&self.orient2d, groups_for(triples.len(), WORKGROUP), &arguments);
         Ok(())
     }
 
@@ -169,56 +115,26 @@ impl Signs {
     ///
     /// # Errors
     ///
-    /// If output or buffers are shorter than the input.
+    /// If the output is shorter than the input.
     pub fn record_must_flip(
         &self,
         recording: &mut Recording,
         positions: View<'_, DVec2>,
         quadruples: View<'_, [u32; 4]>,
         signs: View<'_, u32>,
-        buffers: &SignsBuffers,
     ) -> Result<(), Error> {
-        let limit = check("must_flip_signs", quadruples.len(), signs, buffers)?;
-        let all = MustFlipSignsArgs {
-            positions: positions.cast(),
-            quadruples: quadruples.cast(),
-            signs,
-            items: None,
-            counter: None,
-            deferred: buffers.deferred.view(),
-            deferred_count: buffers.counter.view(),
-            limit,
-        };
-        let (items, counter) = (Some(buffers.deferred.view()), Some(buffers.counter.view()));
-        let list = MustFlipSignsArgs { items, counter, ..all };
-        self.record(recording, &self.must_flip, [all, list], buffers, limit);
+        let count = check("must_flip_signs", quadruples.len(), signs)?;
+        let arguments = MustFlipSignsArgs { positions: positions.cast(), quadruples: quadruples.cast(), signs, count };
+        recording.dispatch(&self.must_flip, groups_for(quadruples.len(), WORKGROUP), &arguments);
         Ok(())
-    }
-
-    fn record<'a, S: Shader>(
-        &self,
-        recording: &mut Recording,
-        kernels: &Kernels<S>,
-        [all, list]: [S::Args<'a>; 2],
-        buffers: &'a SignsBuffers,
-        limit: u32,
-    ) {
-        recording.fill(buffers.counter.view(), 0);
-        recording.dispatch(&kernels.first, groups_for(limit as usize, WORKGROUP), &all);
-        if let Some(rest) = &kernels.rest {
-            let (counter, groups) = (Some(buffers.counter.view()), buffers.groups.view());
-            let size = DispatchSizeArgs { counter, groups, limit, items: WORKGROUP };
-            recording.dispatch(&self.dispatch_size, [1, 1, 1], &size);
-            recording.dispatch_indirect(rest, groups, &list);
-        }
     }
 }
 
-/// The number of tuples, if all that is written has room for as many.
-fn check(command: &'static str, tuples: usize, signs: View<'_, u32>, buffers: &SignsBuffers) -> Result<u32, Error> {
-    let room = signs.len().min(buffers.deferred.len());
+/// The number of tuples, if there is room for as many signs.
+fn check(command: &'static str, tuples: usize, signs: View<'_, u32>) -> Result<u32, Error> {
+    let room = signs.len();
     match u32::try_from(tuples) {
-        Ok(limit) if tuples <= room => Ok(limit),
-        _ => Err(Error::Recording { command, why: format!("{tuples} tuples; there is memory for {room}") }),
+        Ok(count) if tuples <= room => Ok(count),
+        _ => Err(Error::Recording { command, why: format!("{tuples} tuples; there is room for {room} signs") }),
     }
 }
