@@ -29,8 +29,6 @@ const uint ROWS = 14u;
 const uint WORDS = 2u * ROWS;
 // No border of a flooded diagram is nearly as long.
 const uint LONGEST = 1u << 22;
-// Most borders are not longer.
-const uint SOON = 12u;
 
 // For each word of the tile: vertices, those with two triangles, its first slot, triangles before it in the tile.
 shared uvec4 words[WORDS];
@@ -96,51 +94,18 @@ bool reaches(uvec2 sides, inout ivec2 at, inout ivec2 step) {
     return found != sides;
 }
 
-// What `reaches` does, for some steps that stay inside the grid: without looking at its sides, by numbers that stand for
-// places and steps. `x` numbers corners as they lie in memory, that of a corner being the one of its north-east pixel; `y`
-// has a row in the upper half of a word. Whether there was a vertex; if not, nothing is changed.
-bool reaches_soon(uvec2 sides, inout ivec2 at, inout ivec2 step) {
-    ivec2 row = ivec2(width, 1u << 16);
-    ivec2 place = at.y * row + at.x;
-    ivec2 forward = step.y * row + step.x;
-    ivec2 left = step.x * row - step.y;
-    int back = 1 + int(width);
-    for (uint steps = 0u; steps < SOON; steps++) {
-        place += forward;
-        uint ahead_left = colors.at[uint(place.x + (forward.x + left.x - back >> 1))];
-        uint ahead_right = colors.at[uint(place.x + (forward.x - left.x - back >> 1))];
-        if (ahead_left == sides.y) {
-            ivec2 before = forward;
-            forward = left;
-            left = -before;
-        } else if (ahead_right == sides.x) {
-            ivec2 before = forward;
-            forward = -left;
-            left = before;
-        } else if (ahead_left != sides.x || ahead_right != sides.y) {
-            at = ivec2(place.y & 0xffff, place.y >> 16);
-            step = abs(forward.y) == 1 ? ivec2(forward.y, 0) : ivec2(0, sign(forward.y));
-            return true;
-        }
-    }
-    return false;
-}
-
-// The half-edge where the border that leaves a corner by side s ends; `is_far` where the sides of the grid are so far away
-// that they need not be looked at soon.
-uint follow(uint x, uint y, uint s, uvec2 sides, bool is_far) {
+// The half-edge where the border that leaves a corner by side s ends.
+uint follow(uint x, uint y, uint s, uvec2 sides) {
     // South, east, north, west as a step.
     ivec2 step = s == 0u ? ivec2(0, -1) : s == 1u ? ivec2(1, 0) : s == 2u ? ivec2(0, 1) : ivec2(-1, 0);
     ivec2 at = ivec2(x, y);
-    if (!is_far || !reaches_soon(sides, at, step)) {
-        // Several steps a turn, since llvmpipe ends all loops of an invocation after 65535 turns.
-        uint steps = 0u;
-        while (!reaches(sides, at, step) && !reaches(sides, at, step) && !reaches(sides, at, step)
-            && !reaches(sides, at, step)) {
-            steps += 4u;
-            if (steps >= LONGEST) {
-                return GHOST;
-            }
+    // Several steps a turn, since llvmpipe ends all loops of an invocation after 65535 turns.
+    uint steps = 0u;
+    while (!reaches(sides, at, step) && !reaches(sides, at, step) && !reaches(sides, at, step)
+        && !reaches(sides, at, step)) {
+        steps += 4u;
+        if (steps >= LONGEST) {
+            return GHOST;
         }
     }
     // It is reached by the opposite side; counterclockwise from there left, right, ahead right, ahead left.
@@ -192,8 +157,6 @@ void main() {
         }
     }
     barrier();
-    bool is_far = all(greaterThan(tile, uvec2(SOON)))
-        && all(lessThan(tile + uvec2(64u, ROWS) + SOON, uvec2(width, height)));
     uint in_tile = words[WORDS - 1u].w + triangles_of(words[WORDS - 1u].xy);
     for (uint triangle = rank; triangle < in_tile; triangle += WORKGROUP) {
         uint corner = places[triangle] >> 1u;
@@ -221,7 +184,7 @@ void main() {
                 continue;
             }
             uvec2 sides = uvec2(corners[(k + 2u) % 3u], corners[(k + 1u) % 3u]);
-            uint link = follow(x, y, side(r, is_second, k), sides, is_far);
+            uint link = follow(x, y, side(r, is_second, k), sides);
             links.at[h] = link;
             if (link == GHOST) {
                 atomicMin(lost.at[0], y * (width + 1u) + x);

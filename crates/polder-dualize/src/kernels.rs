@@ -114,7 +114,7 @@ impl Shader for DualizeCount {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "06818d3db4b309c7a7c69ab31de0e600cfb31fbbfc9266b5a2a92833b996e057",
+        source_hash: "9780c5975cb6f3b5c06f9231929d24731e5f8f1949664982c05b2f288d357cbf",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -189,7 +189,7 @@ impl Shader for DualizeWrite {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["GroupNonUniform", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "1e50a8d0cf4b767ef35b1de5e60cb4460e1bb69f8e2de898ab38e02ed90399f0",
+        source_hash: "5690c1fbfde59451d104022b5efac082b76443bd2d40bc44b1d02fdc534ebd2f",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
