@@ -42,6 +42,7 @@ shared uint site_bits[(ROWS + 2u * RADIUS) * WORDS];
 // many workgroups run at once depends on how little memory they share.
 shared uint found[IN_ROW > 2u * FOURS ? IN_ROW : 2u * FOURS];
 shared uint uncertain;
+shared uint any_site;
 
 // In column c of the tile and one around, with those that are 31 to either side.
 uint nearest_in_row(uint row, uint c) {
@@ -96,6 +97,13 @@ bool has_closer(uint c, uint row, uint site) {
     return false;
 }
 
+void leave(uint tile, uint tile_row) {
+    if (gl_LocalInvocationIndex == 0u) {
+        left.at[atomicAdd(left_count.at[0], 1u)] = tile;
+        wanted.at[tile_row] = 1u;
+    }
+}
+
 void main() {
     uint tile = group_index();
     uint across = tiles_across(width);
@@ -111,13 +119,24 @@ void main() {
     // 1. From row y0 - 1 - RADIUS and word x0 / 32 - 2 on; what lies before the grid wraps around and is beyond its end.
     if (lane == 0u) {
         uncertain = 0u;
+        any_site = 0u;
     }
+    barrier();
     for (uint i = lane; i < (ROWS + 2u * RADIUS) * WORDS; i += WORKGROUP) {
         uint y = y0 + i / WORDS - 1u - RADIUS;
         uint word = x0 / 32u + i % WORDS - 2u;
-        site_bits[i] = y < height && word < pitch ? bits.at[y * pitch + word] : 0u;
+        uint here = y < height && word < pitch ? bits.at[y * pitch + word] : 0u;
+        site_bits[i] = here;
+        if (here != 0u) {
+            any_site = 1u;
+        }
     }
     barrier();
+
+    if (any_site == 0u) {
+        leave(tile, tile_row);
+        return;
+    }
 
     // 2.
     for (uint i = lane; i < IN_ROW; i += WORKGROUP) {
@@ -167,10 +186,7 @@ void main() {
     }
     barrier();
     if (uncertain != 0u) {
-        if (lane == 0u) {
-            left.at[atomicAdd(left_count.at[0], 1u)] = tile;
-            wanted.at[tile_row] = 1u;
-        }
+        leave(tile, tile_row);
         return;
     }
 

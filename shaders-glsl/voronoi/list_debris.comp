@@ -9,7 +9,6 @@ layout(push_constant, std430) uniform Args {
     WriteU32 colors;
     WriteU32 list;
     U32 count;
-    U32 first_count; // the same
     uint words;
 };
 
@@ -22,9 +21,7 @@ void main() {
     if (left == 0u) {
         return;
     }
-    uint bits = uint(bitCount(left));
-    uint to = atomicAdd(count.at[0], bits);
-    atomicAdd(first_count.at[0], bits);
+    uint to = atomicAdd(count.at[0], uint(bitCount(left)));
     while (left != 0u) {
         uint index = word * 32u + uint(findLSB(left));
         list.at[to] = index;

@@ -1,8 +1,7 @@
 // Repair, 4 of 4: finds the rest of the debris, and then recolors the rest of it if told to, in rounds of one workgroup; at most
 // ROUNDS of them, then `unfinished` says whether to go on.
 //
-// First, debris that was found in the last round loses its color, and what has thereby become debris is found; until there is
-// none. Then all that is listed takes the best color on offer, and where that changes a pixel the debris around it is listed
+// First, what has become debris because a neighbor has lost its color is found, and loses its own; until there is none. Then all that is listed takes the best color on offer, and where that changes a pixel the debris around it is listed
 // for the next round; until nothing changes.
 //
 // Two lists take turns, each with bits of its own for what stands on it.
@@ -17,12 +16,14 @@ const uint ALL_FOUND = 1u;
 const uint RECOLORING = 2u;
 
 // Places in `progress`, four words apart.
-const uint BEGIN = 0u;         // of the debris of the last round
-const uint DEBRIS_ROUNDS = 4u; // in which some was found
-const uint PHASE = 8u;
-const uint LENGTH = 12u;       // of the list
-const uint IN_OTHER = 16u;     // which list
-const uint LISTED = 24u;       // after two turns of recolor_debris; at 20 after one
+const uint MARKED = 0u;    // how many; then of each of the turns of spread_debris
+const uint TURNS = 4u;     // with that of marking
+const uint BEGIN = 16u;    // of the debris of the last round
+const uint END = 20u;      // of all debris; 0 before the first round
+const uint PHASE = 24u;
+const uint LENGTH = 28u;   // of the list
+const uint IN_OTHER = 32u; // which list
+const uint LISTED = 40u;   // after two turns of recolor_debris; at 36 after one
 
 layout(push_constant, std430) uniform Args {
     SharedU32 colors;
@@ -32,10 +33,9 @@ layout(push_constant, std430) uniform Args {
     SharedU32 debris_bits;
     SharedU32 listed_bits; // zeros, or what stands on `list`
     SharedU32 other_bits;
-    ReadU32 count;         // of the debris
     ReadU32 progress;
-    WriteU32 counted;      // the same two, after
-    WriteU32 progressed;
+    WriteU32 progressed;   // the same, after
+    WriteU32 count;        // of the debris
     WriteU32 unfinished;
     uint width;
     uint height;
@@ -50,12 +50,8 @@ void wait_for_all() {
     barrier();
 }
 
-void drop_colors(uint begin, uint end) {
+void find_more(uint begin, uint end) {
     uint lane = gl_LocalInvocationIndex;
-    for (uint i = begin + lane; i < end; i += WORKGROUP) {
-        colors.at[list.at[i]] = UNCOLORED;
-    }
-    wait_for_all();
     // An invocation for each neighbor.
     for (uint i = begin + lane / 8u; i < end; i += WORKGROUP / 8u) {
         uint there = new_debris(colors, sites, debris_bits, list.at[i], lane % 8u, uvec2(width, height));
@@ -83,14 +79,18 @@ void recolor_all(SharedU32 source, SharedU32 source_bits, uint length, SharedU32
 }
 
 void main() {
-    uint end = count.at[0];
-    if (group_index() != 0u || end == 0u) {
+    if (group_index() != 0u || progress.at[MARKED] == 0u) {
         return;
     }
     uint lane = gl_LocalInvocationIndex;
     uint begin = progress.at[BEGIN];
-    // What was marked first is a round, and what that has led to another.
-    uint debris_rounds = progress.at[DEBRIS_ROUNDS] != 0u ? progress.at[DEBRIS_ROUNDS] : begin < end ? 2u : 1u;
+    uint end = progress.at[END];
+    if (end == 0u) {
+        for (uint turn = 0u; turn < TURNS; turn++) {
+            begin = end;
+            end += progress.at[MARKED + 4u * turn];
+        }
+    }
     uint phase = progress.at[PHASE];
     uint length = phase == ALL_FOUND ? progress.at[LISTED] : progress.at[LENGTH];
     bool in_other = progress.at[IN_OTHER] != 0u;
@@ -106,10 +106,9 @@ void main() {
         }
         wait_for_all();
         if (phase == FINDING && begin < end) {
-            drop_colors(begin, end);
+            find_more(begin, end);
             begin = end;
             end = found;
-            debris_rounds += begin < end ? 1u : 0u;
         } else if (phase == FINDING) {
             phase = recolors != 0u ? RECOLORING : ALL_FOUND;
             length = end;
@@ -127,9 +126,9 @@ void main() {
         wait_for_all();
     }
     if (lane == 0u) {
-        counted.at[0] = end;
+        count.at[0] = end;
         progressed.at[BEGIN] = begin;
-        progressed.at[DEBRIS_ROUNDS] = debris_rounds;
+        progressed.at[END] = end;
         progressed.at[PHASE] = phase;
         progressed.at[LENGTH] = length;
         progressed.at[IN_OTHER] = in_other ? 1u : 0u;

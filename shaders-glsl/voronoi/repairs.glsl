@@ -28,7 +28,8 @@ bool keeps(SharedU32 colors, uint pixel, uint color, uint site, uvec2 size) {
     return found;
 }
 
-// Neighbor k of a pixel that has lost its color, if it has thereby become debris, else NONE: its index, to be listed.
+// Neighbor k of a pixel that has lost its color, if it has thereby become debris, else NONE. It loses its color too, and its
+// index is to be listed.
 uint new_debris(SharedU32 colors, ReadU32 sites, SharedU32 debris_bits, uint index, uint k, uvec2 size) {
     uint pixel = neighbor(pixel_at(index, size.x), k, size.x, size.y);
     uint there = index_of(pixel, size.x);
@@ -36,7 +37,11 @@ uint new_debris(SharedU32 colors, ReadU32 sites, SharedU32 debris_bits, uint ind
     if (color == UNCOLORED || keeps(colors, pixel, color, sites.at[color], size)) {
         return NONE;
     }
-    return takes_bit(debris_bits, there) ? there : NONE;
+    if (!takes_bit(debris_bits, there)) {
+        return NONE;
+    }
+    colors.at[there] = UNCOLORED;
+    return there;
 }
 
 // The best color on offer: of the neighbors that are closer to their site than the pixel is, the one whose site comes first

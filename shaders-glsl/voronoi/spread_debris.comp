@@ -1,4 +1,4 @@
-// Repair, 2 of 4: what is debris because a neighbor has lost its color, of all debris that was marked first.
+// Repair, 2 of 4: what is debris because a neighbor has lost its color, of all debris that the turn before has listed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "repairs.glsl"
@@ -8,20 +8,25 @@ layout(push_constant, std430) uniform Args {
     ReadU32 sites;
     U32 list;
     SharedU32 debris_bits;
-    U32 count;
-    ReadU32 first_count;
+    U32 counts; // of each turn, four words apart
+    uint turn;  // the first is 1; what was marked is 0
     uint width;
     uint height;
 };
 
 void main() {
+    uint begin = 0u;
+    uint end = counts.at[0];
+    for (uint i = 1u; i < turn; i++) {
+        begin = end;
+        end += counts.at[4u * i];
+    }
     // An invocation for each neighbor.
-    uint end = first_count.at[0];
     uint k = item_index() % 8u;
-    for (uint i = item_index() / 8u; i < end; i += WORKGROUP / 8u * gl_NumWorkGroups.x * gl_NumWorkGroups.y) {
+    for (uint i = begin + item_index() / 8u; i < end; i += WORKGROUP / 8u * gl_NumWorkGroups.x * gl_NumWorkGroups.y) {
         uint found = new_debris(colors, sites, debris_bits, list.at[i], k, uvec2(width, height));
         if (found != NONE) {
-            list.at[atomicAdd(count.at[0], 1u)] = found;
+            list.at[end + atomicAdd(counts.at[4u * turn], 1u)] = found;
         }
     }
 }

@@ -48,5 +48,5 @@ fn every_failure_of_the_stage_is_an_error_and_the_next_call_works() {
     let expected = reference::diagram(&points(), &Resolution::LongerSide(70).into()).unwrap();
     assert_eq!((order, colors), (expected.sites.order, expected.diagram.colors));
     assert_eq!((reference::kernels::list_debris(&debris), counts), (expected.diagram.debris, expected.counts));
-    assert!(counts.debris > 20 && counts.debris_rounds > 1, "{counts:?}");
+    assert!(counts.debris > 20, "{counts:?}");
 }

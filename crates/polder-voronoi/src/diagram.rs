@@ -85,6 +85,4 @@ pub struct Counts {
     pub missing: u64,
     /// Pixels that the Euclidean coloring cut off from their site.
     pub debris: u64,
-    /// Rounds in which debris was found, the last one finding none.
-    pub debris_rounds: u64,
 }

@@ -222,7 +222,7 @@ impl Shader for ColorTiles {
             Constant { name: "RADIUS", id: 1, default: 16 },
         ],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "0f2319b116f248822c5eb9d666717acbf089269557f84422051ca7bc706889dc",
+        source_hash: "69939b46c1b0871ed8ec6ac4130ab102d4a3244eeaab74c7939f35ccb3d78ab9",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -457,8 +457,6 @@ pub struct ListDebrisArgs<'a> {
     pub list: View<'a, u32>,
     /// read and written
     pub count: View<'a, u32>,
-    /// read and written
-    pub first_count: View<'a, u32>,
     /// a value
     pub words: u32,
 }
@@ -470,19 +468,18 @@ impl Shader for ListDebris {
         name: "list_debris",
         words: include_spirv!("../spv/list_debris.spv"),
         without_float64: None,
-        argument_bytes: 52,
+        argument_bytes: 44,
         buffers: &[
             BufferArgument { name: "any_debris", offset: 0, access: Access::Read },
             BufferArgument { name: "debris_bits", offset: 8, access: Access::Read },
             BufferArgument { name: "colors", offset: 16, access: Access::Write },
             BufferArgument { name: "list", offset: 24, access: Access::Write },
             BufferArgument { name: "count", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "first_count", offset: 40, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "c0aeb4ab1f050c6c9f8380820fdfdb4a97a141354bcf634327c7664f0eac0873",
+        source_hash: "becb9ddbe11b0d749f7b47a20a50f503d2527e69bf8b62c89e7a30fd719066e4",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -492,8 +489,7 @@ impl Shader for ListDebris {
         encoder.buffer(16, args.colors);
         encoder.buffer(24, args.list);
         encoder.buffer(32, args.count);
-        encoder.buffer(40, args.first_count);
-        encoder.value(48, args.words);
+        encoder.value(40, args.words);
     }
 }
 
@@ -900,7 +896,7 @@ impl Shader for RecolorDebris {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "0d16327257628d9903ff0b9c5f987523872332f920483122458e25d82ab39de0",
+        source_hash: "c1123725dd300b92fe910c698c84df8fcc071851917f7cadab1dfb9c550f3097",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -923,8 +919,7 @@ impl Shader for RecolorDebris {
 /// Repair, 4 of 4: finds the rest of the debris, and then recolors the rest of it if told to, in rounds of one workgroup; at most
 /// ROUNDS of them, then `unfinished` says whether to go on.
 ///
-/// First, debris that was found in the last round loses its color, and what has thereby become debris is found; until there is
-/// none. Then all that is listed takes the best color on offer, and where that changes a pixel the debris around it is listed
+/// First, what has become debris because a neighbor has lost its color is found, and loses its own; until there is none. Then all that is listed takes the best color on offer, and where that changes a pixel the debris around it is listed
 /// for the next round; until nothing changes.
 ///
 /// Two lists take turns, each with bits of its own for what stands on it.
@@ -949,13 +944,11 @@ pub struct RepairArgs<'a> {
     /// read and written
     pub other_bits: View<'a, u32>,
     /// read
-    pub count: View<'a, u32>,
-    /// read
     pub progress: View<'a, u32>,
     /// written
-    pub counted: View<'a, u32>,
-    /// written
     pub progressed: View<'a, u32>,
+    /// written
+    pub count: View<'a, u32>,
     /// written
     pub unfinished: View<'a, u32>,
     /// a value
@@ -973,7 +966,7 @@ impl Shader for Repair {
         name: "repair",
         words: include_spirv!("../spv/repair.spv"),
         without_float64: None,
-        argument_bytes: 108,
+        argument_bytes: 100,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "sites", offset: 8, access: Access::Read },
@@ -982,11 +975,10 @@ impl Shader for Repair {
             BufferArgument { name: "debris_bits", offset: 32, access: Access::ReadWrite },
             BufferArgument { name: "listed_bits", offset: 40, access: Access::ReadWrite },
             BufferArgument { name: "other_bits", offset: 48, access: Access::ReadWrite },
-            BufferArgument { name: "count", offset: 56, access: Access::Read },
-            BufferArgument { name: "progress", offset: 64, access: Access::Read },
-            BufferArgument { name: "counted", offset: 72, access: Access::Write },
-            BufferArgument { name: "progressed", offset: 80, access: Access::Write },
-            BufferArgument { name: "unfinished", offset: 88, access: Access::Write },
+            BufferArgument { name: "progress", offset: 56, access: Access::Read },
+            BufferArgument { name: "progressed", offset: 64, access: Access::Write },
+            BufferArgument { name: "count", offset: 72, access: Access::Write },
+            BufferArgument { name: "unfinished", offset: 80, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -994,7 +986,7 @@ impl Shader for Repair {
             Constant { name: "ROUNDS", id: 1, default: 256 },
         ],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "3d24664d267fbb32219670e66e51d759784c5e0a36d294bf01f8023bb68aba92",
+        source_hash: "b25fd9da2405c07035b7b43bc1830d2294b339ca121c23f226673dd9cd441c48",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1006,14 +998,13 @@ impl Shader for Repair {
         encoder.buffer(32, args.debris_bits);
         encoder.buffer(40, args.listed_bits);
         encoder.buffer(48, args.other_bits);
-        encoder.buffer(56, args.count);
-        encoder.buffer(64, args.progress);
-        encoder.buffer(72, args.counted);
-        encoder.buffer(80, args.progressed);
-        encoder.buffer(88, args.unfinished);
-        encoder.value(96, args.width);
-        encoder.value(100, args.height);
-        encoder.value(104, args.recolors);
+        encoder.buffer(56, args.progress);
+        encoder.buffer(64, args.progressed);
+        encoder.buffer(72, args.count);
+        encoder.buffer(80, args.unfinished);
+        encoder.value(88, args.width);
+        encoder.value(92, args.height);
+        encoder.value(96, args.recolors);
     }
 }
 
@@ -1145,7 +1136,7 @@ impl Shader for RowStacks {
     }
 }
 
-/// Repair, 2 of 4: what is debris because a neighbor has lost its color, of all debris that was marked first.
+/// Repair, 2 of 4: what is debris because a neighbor has lost its color, of all debris that the turn before has listed.
 #[derive(Debug, Clone, Copy)]
 pub enum SpreadDebris {}
 
@@ -1161,9 +1152,9 @@ pub struct SpreadDebrisArgs<'a> {
     /// read and written
     pub debris_bits: View<'a, u32>,
     /// read and written
-    pub count: View<'a, u32>,
-    /// read
-    pub first_count: View<'a, u32>,
+    pub counts: View<'a, u32>,
+    /// a value
+    pub turn: u32,
     /// a value
     pub width: u32,
     /// a value
@@ -1177,19 +1168,18 @@ impl Shader for SpreadDebris {
         name: "spread_debris",
         words: include_spirv!("../spv/spread_debris.spv"),
         without_float64: None,
-        argument_bytes: 56,
+        argument_bytes: 52,
         buffers: &[
             BufferArgument { name: "colors", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "sites", offset: 8, access: Access::Read },
             BufferArgument { name: "list", offset: 16, access: Access::ReadWrite },
             BufferArgument { name: "debris_bits", offset: 24, access: Access::ReadWrite },
-            BufferArgument { name: "count", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "first_count", offset: 40, access: Access::Read },
+            BufferArgument { name: "counts", offset: 32, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "85ee698cebff3bc6dbc4914ef378c1fe14de5b99c173f8dbd709e0b9cd6f921c",
+        source_hash: "7c09430e11b41f1aba1c69f72c8d91c5925ac131fbcc6895650fbdc3e087e070",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1198,9 +1188,9 @@ impl Shader for SpreadDebris {
         encoder.buffer(8, args.sites);
         encoder.buffer(16, args.list);
         encoder.buffer(24, args.debris_bits);
-        encoder.buffer(32, args.count);
-        encoder.buffer(40, args.first_count);
-        encoder.value(48, args.width);
-        encoder.value(52, args.height);
+        encoder.buffer(32, args.counts);
+        encoder.value(40, args.turn);
+        encoder.value(44, args.width);
+        encoder.value(48, args.height);
     }
 }

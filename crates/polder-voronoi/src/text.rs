@@ -82,8 +82,7 @@ impl fmt::Display for Sites {
 /// One line.
 impl fmt::Display for Counts {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { points, pixels, sites, missing, debris, debris_rounds } = self;
-        write!(f, "{points} points on {pixels} pixels: {sites} sites, {missing} missing; {debris} pixels of debris, ")?;
-        write!(f, "rounds to find it {debris_rounds}")
+        let Self { points, pixels, sites, missing, debris } = self;
+        write!(f, "{points} points on {pixels} pixels: {sites} sites, {missing} missing; {debris} pixels of debris")
     }
 }

@@ -73,7 +73,6 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
             ("sites", counts.sites),
             ("missing_points", counts.missing),
             ("debris_pixels", counts.debris),
-            ("rounds", counts.debris_rounds),
         ],
     );
 

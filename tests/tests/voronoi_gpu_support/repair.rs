@@ -43,7 +43,7 @@ fn list_debris() {
             let expected = kernels::list_debris(&input);
             let (bits, colors) = (gpu.buffer(&input), gpu.buffer(&vec![7_u32; 32 * count]));
             let list = gpu.buffer(&vec![7_u32; expected.len() + 1]);
-            let (total, first) = (gpu.buffer(&[0_u32]), gpu.buffer(&[0_u32]));
+            let total = gpu.buffer(&[0_u32]);
             for flag in [0_u32, 1] {
                 let any = gpu.buffer(&[flag]);
                 let arguments = ListDebrisArgs {
@@ -52,12 +52,10 @@ fn list_debris() {
                     colors: colors.view(),
                     list: list.view(),
                     count: total.view(),
-                    first_count: first.view(),
                     words: count as u32,
                 };
                 run::<ListDebris>(gpu, count, &arguments);
                 assert_eq!(gpu.fetch(total.view()), [flag * expected.len() as u32]);
-                assert_eq!(gpu.fetch(first.view()), [flag * expected.len() as u32]);
             }
             let found = gpu.fetch(list.view());
             let mut uncolored = vec![7; 32 * count];
@@ -74,9 +72,9 @@ struct Listed {
     sites: Buffer<u32>,
     list: Buffer<u32>,
     bits: Buffer<u32>,
-    count: Buffer<u32>,
-    /// The list, and what is found to be debris because of it.
-    first: Vec<u32>,
+    /// As `repair` keeps it; the first words count what each turn has found.
+    progress: Buffer<u32>,
+    /// What turn 1 finds at least.
     then: Vec<u32>,
 }
 
@@ -85,56 +83,70 @@ impl Listed {
         let [width, height] = sites.size;
         let all: Vec<u32> = (0..width.div_ceil(64) * height.div_ceil(62)).collect();
         let marked = kernels::mark_debris(diagram, sites, &all);
-        let first = kernels::list_debris(&marked);
+        let mut list = kernels::list_debris(&marked);
         let mut dropped = diagram.clone();
-        first.iter().for_each(|&index| dropped.colors[index as usize] = UNCOLORED);
-        let then = kernels::spread_debris(&dropped, sites, &first);
-        let mut list = first.clone();
+        list.iter().for_each(|&index| dropped.colors[index as usize] = UNCOLORED);
+        let then = kernels::spread_debris(&dropped, sites, &list);
+        let mut progress = vec![0_u32; 44];
+        progress[0] = list.len() as u32;
         list.resize(dropped.colors.len(), 7);
         Listed {
             colors: gpu.buffer(&dropped.colors),
             sites: gpu.buffer(&words_of(&sites.pixels)),
             list: gpu.buffer(&list),
             bits: gpu.buffer(&marked),
-            count: gpu.buffer(&[first.len() as u32]),
-            first,
+            progress: gpu.buffer(&progress),
             then,
         }
     }
 
-    fn spread(&self, gpu: &mut Gpu, [width, height]: [u32; 2]) {
-        let first_count = gpu.buffer(&[self.first.len() as u32]);
+    /// Runs a turn and returns what it has listed.
+    fn spread(&self, gpu: &mut Gpu, turn: u32, [width, height]: [u32; 2]) -> Vec<u32> {
         let arguments = SpreadDebrisArgs {
             colors: self.colors.view(),
             sites: self.sites.view(),
             list: self.list.view(),
             debris_bits: self.bits.view(),
-            count: self.count.view(),
-            first_count: first_count.view(),
+            counts: self.progress.view(),
+            turn,
             width,
             height,
         };
         // Fewer invocations than neighbors.
         run_with::<SpreadDebris>(gpu, &[("WORKGROUP", 64)], [3, 1, 1], &arguments);
+        let counts = gpu.fetch(self.progress.view());
+        let ends: Vec<usize> = (0..=turn as usize).map(|turn| counts[4 * turn] as usize).collect();
+        let end: usize = ends.iter().sum();
+        gpu.fetch(self.list.view())[end - ends[turn as usize]..end].to_vec()
     }
 }
 
 #[test]
 fn spread_debris() {
     with_device(|Shared { gpu, .. }| {
-        let mut found = 0;
-        for (sites, diagram) in diagrams() {
+        let mut found = [0, 0];
+        for (sites, mut diagram) in diagrams() {
             let listed = Listed::new(gpu, &sites, &diagram);
-            listed.spread(gpu, sites.size);
-            let (from, to) = (listed.first.len(), listed.first.len() + listed.then.len());
-            assert_eq!(gpu.fetch(listed.count.view()), [to as u32]);
-            let list = gpu.fetch(listed.list.view());
-            assert_eq!((&list[..from], sorted(list[from..to].to_vec())), (&listed.first[..], listed.then.clone()));
-            let bits = sorted([listed.first.clone(), listed.then.clone()].concat());
-            assert_eq!(kernels::list_debris(&gpu.fetch(listed.bits.view())), bits);
-            found += listed.then.len();
+            let marked = gpu.fetch(listed.progress.view())[0] as usize;
+            let mut all = gpu.fetch(listed.list.view())[..marked].to_vec();
+            for turn in 1.. {
+                let more = listed.spread(gpu, turn, sites.size);
+                if turn == 1 {
+                    assert!(listed.then.iter().all(|index| more.contains(index)));
+                }
+                all.extend(&more);
+                found[usize::from(turn > 1)] += more.len();
+                if more.is_empty() || turn == 9 {
+                    break;
+                }
+            }
+            // Once a turn finds nothing there is nothing left.
+            reference::debris(&mut diagram, &sites).unwrap();
+            assert_eq!(sorted(all), diagram.debris);
+            assert_eq!(kernels::list_debris(&gpu.fetch(listed.bits.view())), diagram.debris);
+            assert!(gpu.fetch(listed.colors.view()) == diagram.colors);
         }
-        assert!(found > 20, "{found}");
+        assert!(found[0] > 20 && found[1] > 0, "{found:?}");
     });
 }
 
@@ -224,13 +236,13 @@ fn repair() {
         for (turn, (sites, mut diagram)) in diagrams().into_iter().enumerate() {
             let [width, height] = sites.size;
             let listed = Listed::new(gpu, &sites, &diagram);
-            listed.spread(gpu, sites.size);
+            for done in 1..=turn as u32 % 4 {
+                listed.spread(gpu, done, sites.size);
+            }
             let words = diagram.colors.len().div_ceil(32);
             let other_list = gpu.buffer(&vec![7_u32; diagram.colors.len()]);
             let (listed_bits, other_bits) = (gpu.buffer(&vec![0_u32; words]), gpu.buffer(&vec![0_u32; words]));
-            let mut start = vec![0_u32; 28];
-            start[0] = listed.first.len() as u32;
-            let (progress, unfinished) = (gpu.buffer(&start), gpu.buffer(&[0_u32]));
+            let (count, unfinished) = (gpu.buffer(&[0_u32]), gpu.buffer(&[0_u32]));
             let mut arguments = RepairArgs {
                 colors: listed.colors.view(),
                 sites: listed.sites.view(),
@@ -239,10 +251,9 @@ fn repair() {
                 debris_bits: listed.bits.view(),
                 listed_bits: listed_bits.view(),
                 other_bits: other_bits.view(),
-                count: listed.count.view(),
-                progress: progress.view(),
-                counted: listed.count.view(),
-                progressed: progress.view(),
+                progress: listed.progress.view(),
+                progressed: listed.progress.view(),
+                count: count.view(),
                 unfinished: unfinished.view(),
                 width,
                 height,
@@ -254,11 +265,11 @@ fn repair() {
             let finds_first = turn % 2 == 0;
             if finds_first {
                 run_with::<Repair>(gpu, &constants, [1, 1, 1], &arguments);
-                let mut state = gpu.fetch(progress.view());
-                if state[8] == 1 {
+                let mut state = gpu.fetch(listed.progress.view());
+                if state[24] == 1 {
                     // All found: the list of two turns of recolor_debris that have changed nothing yet is all of it.
-                    state[24] = gpu.fetch(listed.count.view())[0];
-                    gpu.engine.upload(progress.view(), &state).unwrap();
+                    state[40] = gpu.fetch(count.view())[0];
+                    gpu.engine.upload(listed.progress.view(), &state).unwrap();
                 }
             }
             arguments.recolors = 1;
@@ -268,11 +279,10 @@ fn repair() {
                 dispatches += 1;
                 assert!(dispatches < 10_000);
             }
-            let debris_rounds = kernels::repair(&mut diagram, &sites).unwrap();
+            kernels::repair(&mut diagram, &sites).unwrap();
             assert!(gpu.fetch(listed.colors.view()) == diagram.colors);
             assert_eq!(kernels::list_debris(&gpu.fetch(listed.bits.view())), diagram.debris);
-            assert_eq!(gpu.fetch(listed.count.view()), [diagram.debris.len() as u32]);
-            assert_eq!(u64::from(gpu.fetch(progress.view())[4]), debris_rounds);
+            assert_eq!(gpu.fetch(count.view()), [diagram.debris.len() as u32]);
             assert_eq!(gpu.fetch(listed_bits.view()), vec![0; words]);
             assert_eq!(gpu.fetch(other_bits.view()), vec![0; words]);
             most = most.max(diagram.debris.len());

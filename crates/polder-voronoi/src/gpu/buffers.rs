@@ -8,7 +8,7 @@ use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunRep
 
 /// The most points: kernels reach 4 GiB from an address.
 pub(super) const MOST_POINTS: usize = 1 << 28;
-const WORDS: usize = 72;
+const WORDS: usize = 88;
 
 /// Places of single words in the counts: views begin at multiples of 4 words.
 #[derive(Clone, Copy)]
@@ -20,14 +20,13 @@ pub(super) enum Word {
     AnyDebris = 12,
     Left = 16,
     Unfinished = 20,
-    /// Of repair, words four apart; the first counts the debris that was marked.
+    /// Of repair, words four apart; the first four count the debris that was marked, and that of each turn after.
     Progress = 24,
-    DebrisRounds = 28,
-    Phase = 32,
-    ListedOnce = 44,
-    Listed = 48,
+    Phase = 48,
+    ListedOnce = 60,
+    Listed = 64,
     /// Five sizes of dispatches.
-    Groups = 52,
+    Groups = 68,
 }
 
 /// Dispatches whose sizes `plan_bands` writes, in its order.
@@ -285,8 +284,6 @@ impl CountsRead {
             sites: at(Word::Sites as usize),
             missing: at(Word::Missing as usize),
             debris: at(Word::Debris as usize),
-            // The device counts the rounds that found some.
-            debris_rounds: at(Word::DebrisRounds as usize) + 1,
         }
     }
 

@@ -197,13 +197,17 @@ impl Stage {
         let (colors, sites) = (buffers.colors.view(), buffers.pixels.view().cast::<u32>());
         let (list, other_list, debris_bits) = (buffers.a.view(), buffers.b.view(), buffers.debris_bits()?);
         let (listed_bits, other_bits) = (buffers.bits_of_debris(1)?, buffers.bits_of_debris(2)?);
-        let first_count = buffers.word(Word::Progress)?;
         let any_debris = buffers.word(Word::AnyDebris)?;
         let words = debris_bits.len() as u32;
-        let arguments = ListDebrisArgs { any_debris, debris_bits, colors, list, count, first_count, words };
+        let marked = buffers.word(Word::Progress)?;
+        let arguments = ListDebrisArgs { any_debris, debris_bits, colors, list, count: marked, words };
         recording.dispatch(&self.list_debris, groups_for(words as usize, WORKGROUP), &arguments);
-        let arguments = SpreadDebrisArgs { colors, sites, list, debris_bits, count, first_count, width, height };
-        recording.dispatch(&self.spread_debris, WIDE, &arguments);
+        // Most work is in the first turns, which all workgroups share.
+        for turn in 1..=3 {
+            let counts = buffers.progress()?;
+            let arguments = SpreadDebrisArgs { colors, sites, list, debris_bits, counts, turn, width, height };
+            recording.dispatch(&self.spread_debris, WIDE, &arguments);
+        }
         let arguments = RepairArgs {
             colors,
             sites,
@@ -212,17 +216,15 @@ impl Stage {
             debris_bits,
             listed_bits,
             other_bits,
-            count,
             progress: buffers.progress()?,
-            counted: count,
             progressed: buffers.progress()?,
+            count,
             unfinished,
             width,
             height,
             recolors: 0,
         };
         recording.dispatch(&self.repair, [1, 1, 1], &arguments);
-        // Most work is in the first two turns, which all workgroups share.
         let (phase, once, twice) =
             (buffers.word(Word::Phase)?, buffers.word(Word::ListedOnce)?, buffers.word(Word::Listed)?);
         let turn = RecolorDebrisArgs {

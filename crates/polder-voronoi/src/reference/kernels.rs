@@ -342,7 +342,8 @@ pub fn list_debris(bits: &[u32]) -> Vec<u32> {
     numbers_of_bits(bits).collect()
 }
 
-/// Those neighbors of some pixels without color that have lost their last closer neighbor of their own color, ascending.
+/// Those neighbors of some pixels without color that have lost their last closer neighbor of their own color, ascending. A
+/// device may find more in a turn: what is debris because these are.
 pub fn spread_debris(diagram: &Diagram, sites: &Sites, dropped: &[u32]) -> Vec<u32> {
     let around = dropped.iter().flat_map(|&index| neighbors(diagram, diagram.pixel(index as usize)));
     let mut found: Vec<u32> = around
@@ -371,14 +372,13 @@ pub fn recolor_debris(diagram: &mut Diagram, sites: &Sites, list: &[u32]) -> Vec
     next
 }
 
-/// Finds all debris and recolors it. Returns the rounds in which some was found, as [`debris`](super::debris) counts them
-/// but without the last, which finds none.
+/// Finds all debris and recolors it.
 ///
 /// # Errors
 ///
 /// Those of [`debris`](super::debris) and [`recolor`](super::recolor).
-pub fn repair(diagram: &mut Diagram, sites: &Sites) -> Result<u64, VoronoiError> {
-    let rounds = super::debris(diagram, sites)?;
+pub fn repair(diagram: &mut Diagram, sites: &Sites) -> Result<(), VoronoiError> {
+    super::debris(diagram, sites)?;
     super::recolor(diagram, sites)?;
-    Ok(rounds - 1)
+    Ok(())
 }

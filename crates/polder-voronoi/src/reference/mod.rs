@@ -41,7 +41,7 @@ pub fn diagram(points: &[DVec2], options: &Options) -> Result<Output, VoronoiErr
     let mapping = GridMapping::fit(points, options)?;
     let sites = map(points, &mapping)?;
     let mut diagram = color(&sites)?;
-    let debris_rounds = debris(&mut diagram, &sites)?;
+    debris(&mut diagram, &sites)?;
     recolor(&mut diagram, &sites)?;
     let counts = Counts {
         points: points.len() as u64,
@@ -49,7 +49,6 @@ pub fn diagram(points: &[DVec2], options: &Options) -> Result<Output, VoronoiErr
         sites: sites.count as u64,
         missing: sites.missing() as u64,
         debris: diagram.debris.len() as u64,
-        debris_rounds,
     };
     Ok(Output { mapping, sites, diagram, counts })
 }
