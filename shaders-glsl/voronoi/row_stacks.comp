@@ -1,8 +1,6 @@
 // Coloring, 5 of 8: for each row of each band of columns the stack of its proximate sites, those that are nearest to some
 // pixel of the whole row. A workgroup takes WORKGROUP rows of a band, an invocation each, and keeps the stacks in shared memory.
-// `live` holds for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits. Its summary: the site
-// of its first entry and that of its last, column and row; the first pixel of the second (of none: the width) and of the last;
-// how many there are.
+// `live` holds for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "row.glsl"
@@ -14,7 +12,6 @@ layout(push_constant, std430) uniform Args {
     ReadU32 wanted;
     WriteU32 entries;
     WriteU32 live;
-    WriteU32 summaries;
     uint width;
     uint height;
 };
@@ -70,15 +67,6 @@ void main() {
             }
         }
         live.at[y * bands + band] = count << 8;
-        if (count > 0u) {
-            uint last = stacks[stack + count - 1u] & 0xffffu;
-            uint first = stacks[stack] & 0xffffu;
-            uint second_from = count > 1u ? stacks[stack + 1u] >> 16 : width;
-            WriteU32x4(summaries).at[y * bands + band] = uvec4(first << 16 | nearest_row(nearest, first, y, width),
-                last << 16 | nearest_row(nearest, last, y, width), second_from << 16 | top_from, count);
-        } else {
-            WriteU32x4(summaries).at[y * bands + band] = uvec4(0u);
-        }
     }
     counts[lane] = count;
     barrier();

@@ -1025,10 +1025,8 @@ pub struct RowMergeArgs<'a> {
     pub entries: View<'a, u32>,
     /// read and written
     pub live: View<'a, u32>,
-    /// read and written
+    /// written
     pub starts: View<'a, u32>,
-    /// read
-    pub summaries: View<'a, u32>,
     /// a value
     pub width: u32,
     /// a value
@@ -1044,19 +1042,18 @@ impl Shader for RowMerge {
         name: "row_merge",
         words: include_spirv!("../spv/row_merge.spv"),
         without_float64: None,
-        argument_bytes: 60,
+        argument_bytes: 52,
         buffers: &[
             BufferArgument { name: "nearest", offset: 0, access: Access::Read },
             BufferArgument { name: "wanted", offset: 8, access: Access::Read },
             BufferArgument { name: "entries", offset: 16, access: Access::ReadWrite },
             BufferArgument { name: "live", offset: 24, access: Access::ReadWrite },
-            BufferArgument { name: "starts", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "summaries", offset: 40, access: Access::Read },
+            BufferArgument { name: "starts", offset: 32, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "170e3f511eb91eace6f0783dc45e5aca6abbe635408c666b550ed5904783fe0f",
+        source_hash: "1826f1ec2217ffd451928e7e29ad7856fd5d65fb172d72c096ecb4f297e73a73",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1066,18 +1063,15 @@ impl Shader for RowMerge {
         encoder.buffer(16, args.entries);
         encoder.buffer(24, args.live);
         encoder.buffer(32, args.starts);
-        encoder.buffer(40, args.summaries);
-        encoder.value(48, args.width);
-        encoder.value(52, args.height);
-        encoder.value(56, args.band);
+        encoder.value(40, args.width);
+        encoder.value(44, args.height);
+        encoder.value(48, args.band);
     }
 }
 
 /// Coloring, 5 of 8: for each row of each band of columns the stack of its proximate sites, those that are nearest to some
 /// pixel of the whole row. A workgroup takes WORKGROUP rows of a band, an invocation each, and keeps the stacks in shared memory.
-/// `live` holds for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits. Its summary: the site
-/// of its first entry and that of its last, column and row; the first pixel of the second (of none: the width) and of the last;
-/// how many there are.
+/// `live` holds for each stack its first entry, its end, and (later) the band before it: 8, 8 and 16 bits.
 #[derive(Debug, Clone, Copy)]
 pub enum RowStacks {}
 
@@ -1092,8 +1086,6 @@ pub struct RowStacksArgs<'a> {
     pub entries: View<'a, u32>,
     /// written
     pub live: View<'a, u32>,
-    /// written
-    pub summaries: View<'a, u32>,
     /// a value
     pub width: u32,
     /// a value
@@ -1107,13 +1099,12 @@ impl Shader for RowStacks {
         name: "row_stacks",
         words: include_spirv!("../spv/row_stacks.spv"),
         without_float64: None,
-        argument_bytes: 48,
+        argument_bytes: 40,
         buffers: &[
             BufferArgument { name: "nearest", offset: 0, access: Access::Read },
             BufferArgument { name: "wanted", offset: 8, access: Access::Read },
             BufferArgument { name: "entries", offset: 16, access: Access::Write },
             BufferArgument { name: "live", offset: 24, access: Access::Write },
-            BufferArgument { name: "summaries", offset: 32, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -1121,7 +1112,7 @@ impl Shader for RowStacks {
             Constant { name: "BAND", id: 1, default: 64 },
         ],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "6e5cc8a8e456eee4e8eaef5511216b6886e5dd0e3c795c7d57a00919c171087a",
+        source_hash: "fed9d9abedfb88faa905b82c92213b07d05dd26125ae7ec34ef7abe3ca8407e0",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1130,9 +1121,8 @@ impl Shader for RowStacks {
         encoder.buffer(8, args.wanted);
         encoder.buffer(16, args.entries);
         encoder.buffer(24, args.live);
-        encoder.buffer(32, args.summaries);
-        encoder.value(40, args.width);
-        encoder.value(44, args.height);
+        encoder.value(32, args.width);
+        encoder.value(36, args.height);
     }
 }
 

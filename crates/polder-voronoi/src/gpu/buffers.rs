@@ -69,7 +69,6 @@ pub struct Buffers {
     pub(super) ends: Buffer<u32>,
     pub(super) live: Buffer<u32>,
     pub(super) starts: Buffer<u32>,
-    pub(super) summaries: Buffer<u32>,
     pub(super) scan: Scan,
     pub(super) sort: Sort<u32>,
 }
@@ -138,7 +137,6 @@ pub(super) fn estimate(device: &Device, points: usize, size: [u32; 2], tuning: T
         ("column ends", lengths.ends),
         ("row stacks", lengths.stacks),
         ("row starts", lengths.stacks),
-        ("row summaries", 4 * lengths.stacks),
     ] {
         estimate = estimate.buffer::<u32>(name, len);
     }
@@ -177,7 +175,6 @@ impl Buffers {
             ends: words("column ends", lengths.ends)?,
             live: words("row stacks", lengths.stacks)?,
             starts: words("row starts", lengths.stacks)?,
-            summaries: words("row summaries", 4 * lengths.stacks)?,
             scan: Scan::new(device, lengths.scanned())?,
             sort: Sort::new(device, points)?,
         })

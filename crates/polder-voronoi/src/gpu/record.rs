@@ -161,11 +161,9 @@ impl Stage {
         recording.dispatch_indirect(&self.column_ends, buffers.groups(Planned::ColumnEnds)?, &arguments);
         let arguments = ColumnFillArgs { bits, ends, wanted, nearest, width, height, band: rows };
         recording.dispatch_indirect(&self.column_fill, buffers.groups(Planned::ColumnFill)?, &arguments);
-        let summaries = buffers.summaries.view();
-        let arguments = RowStacksArgs { nearest, wanted, entries, live, summaries, width, height };
+        let arguments = RowStacksArgs { nearest, wanted, entries, live, width, height };
         recording.dispatch_indirect(&self.row_stacks, buffers.groups(Planned::RowStacks)?, &arguments);
-        let arguments =
-            RowMergeArgs { nearest, wanted, entries, live, starts, summaries, width, height, band: columns };
+        let arguments = RowMergeArgs { nearest, wanted, entries, live, starts, width, height, band: columns };
         recording.dispatch_indirect(&self.row_merge, buffers.groups(Planned::RowMerge)?, &arguments);
         let arguments = ColorPixelsArgs {
             bits,

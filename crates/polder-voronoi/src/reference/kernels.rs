@@ -234,23 +234,6 @@ pub fn row_stacks(nearest: &[u32], [width, _]: [u32; 2], band: u32) -> (Vec<u32>
     (entries, live)
 }
 
-/// For each stack the site of its first entry and that of its last, column in the upper half word and row in the lower; the
-/// first pixel of the second (of none: the width) and of the last; how many there are.
-pub fn summaries(nearest: &[u32], entries: &[u32], live: &[u32], [width, _]: [u32; 2], band: u32) -> Vec<[u32; 4]> {
-    let bands = width.div_ceil(band);
-    let summary = |(stack, word): (usize, &u32)| {
-        let (row, band_start) = (stack as u32 / bands * width, stack as u32 % bands * band);
-        let stack = &entries[(row + band_start) as usize..][..(word >> 8) as usize];
-        let site = |entry: u32| (entry & 0xffff) << 16 | nearest[(row + (entry & 0xffff)) as usize];
-        match stack {
-            [] => [0; 4],
-            [first, .., last] => [site(*first), site(*last), stack[1] & 0xffff_0000 | last >> 16, stack.len() as u32],
-            [only] => [site(*only), site(*only), width << 16 | only >> 16, 1],
-        }
-    };
-    live.iter().enumerate().map(summary).collect()
-}
-
 /// Narrows each stack to those that win against all of the row, gives the first of them its first pixel, links each stack
 /// that is left to the one before, and returns the first pixel of each; an empty one has that of the next.
 pub fn row_merge(
