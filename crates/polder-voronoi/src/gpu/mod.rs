@@ -49,7 +49,7 @@ pub struct Tuning {
 
 impl Default for Tuning {
     fn default() -> Self {
-        Self { radius: 16, rows: 62, columns: 32, tile_lanes: 256, row_lanes: 64 }
+        Self { radius: 24, rows: 62, columns: 32, tile_lanes: 256, row_lanes: 64 }
     }
 }
 
