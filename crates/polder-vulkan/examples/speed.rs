@@ -6,6 +6,7 @@ use polder_vulkan::{Buffer, Device, DeviceOptions, Engine, Error, Recording, Run
 use std::time::{Duration, Instant};
 
 const RUNS: usize = 10;
+const WARM_UP: Duration = Duration::from_millis(500);
 
 fn main() -> Result<(), Error> {
     let device = Device::open(&DeviceOptions::default())?;
@@ -34,6 +35,11 @@ fn measure(
     mut before: impl FnMut(&mut Engine) -> Result<(), Error>,
 ) -> Result<(Duration, Duration, Timings), Error> {
     let (mut clock, mut kernels, mut last) = (Vec::new(), Vec::new(), Timings::default());
+    // A card that has waited for the host runs slowly at first.
+    let start = Instant::now();
+    while start.elapsed() < WARM_UP {
+        engine.run(recording, &RunOptions::default())?;
+    }
     for _ in 0..=RUNS {
         before(engine)?;
         let start = Instant::now();
