@@ -34,7 +34,25 @@ fn cases(seed: u64) -> Vec<Family> {
 type Make = fn(&mut Random) -> [DVec2; 4];
 
 /// Numbers of many bits, and determinants that are zero or nearly so.
-const WIDE: [(&str, Make); 5] = [
+const WIDE: [(&str, Make); 8] = [
+    ("an integer circle of 13 bits", |r| {
+        // 5525 is 5 * 5 * 13 * 17, so there are many; these are some.
+        let points: [(i64, i64); 8] =
+            [(5525, 0), (5500, 525), (5491, 612), (5365, 1320), (5304, 1547), (4715, 2880), (5100, 2125), (5005, 2340)];
+        [0; 4].map(|_| {
+            let (x, y) = r.pick(&points);
+            let (x, y) = if r.below(2) == 0 { (x, y) } else { (y, x) };
+            let sign = |r: &mut Random| r.pick(&[-1.0, 1.0]);
+            DVec2::new(x as f64 * sign(r), y as f64 * sign(r))
+        })
+    }),
+    ("nearly collinear integers of 28 bits", |r| {
+        let step = DVec2::new(r.integer(1, 1 << 14) as f64, r.integer(1, 1 << 14) as f64);
+        [0; 4].map(|_| step * r.integer(0, 1 << 14) as f64 + DVec2::X * (r.below(8) / 7) as f64)
+    }),
+    ("products of two near the smallest double", |r| {
+        [0; 4].map(|_| DVec2::new(r.unit() - 0.5, r.unit() - 0.5) * ldexp(1.0, r.integer(-545, -525) as i32))
+    }),
     ("rectangles of all exponents", |r| rectangle(r, -1000, 990)),
     ("rectangles of a few exponents", |r| rectangle(r, -9, 60)),
     ("rectangles, a corner one ulp off", |r| {
