@@ -15,7 +15,8 @@ BUFFER(ReadPositions, uvec4, 16, readonly);
 // The state of a site that is not pinned is its number; of one that was taken out, its heir. The state of a pinned site
 // has the highest bit, and
 // - while sites are pinned: its place in the list of pinned sites;
-// - while they are unpinned: that, or once it was tried, the round of that and how it ended;
+// - while they are unpinned: that, then the neighbor that it waits for, and once it was tried the round of that and how it
+//   ended;
 // - while they are taken out: a half-edge that starts there.
 const uint PINNED = 0x80000000u;
 const uint TRIED = 0x40000000u;

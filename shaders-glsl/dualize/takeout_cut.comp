@@ -24,13 +24,18 @@ layout(push_constant, std430) uniform Args {
 };
 
 bool is_decided_ear(uvec4 at, uvec4 a, uvec4 l, uvec4 b, out bool is_ear) {
-    // Both signs by one call: a l b and a b v.
-    int signs[2];
+    // Both signs by one call: a l b must be 1, and a b v not be -1.
+    bool decided = true;
     [[dont_unroll]] for (uint k = 0u; k < 2u; k++) {
-        signs[k] = orient2d(a, k == 0u ? l : b, k == 0u ? b : at);
+        int sign = orient2d(a, k == 0u ? l : b, k == 0u ? b : at);
+        decided = decided && sign != UNDECIDED;
+        if (sign == -1 || k == 0u && sign == 0) {
+            is_ear = false;
+            return true;
+        }
     }
-    is_ear = signs[0] == 1 && signs[1] != -1;
-    return !(signs[0] == UNDECIDED && signs[1] != -1 || signs[1] == UNDECIDED && signs[0] == 1);
+    is_ear = decided;
+    return decided;
 }
 
 void free_two(uint v, uint t, uint u) {
@@ -95,9 +100,18 @@ void place_edge(uint c, uint to) {
 // Cuts the star whose spokes and ends are in the arrays; or does nothing and returns false.
 bool cut_small(uint v, uint degree, uint ghost) {
     uvec4 at = positions.at[v];
-    for (uint k = 0u; k < degree; k++) {
-        where[k] = positions.at[ends[k] < DELETED ? ends[k] : v];
-        across[k] = links.at[next_edge(spokes[k])];
+    for (uint first = 0u; first < degree; first += STEPS) {
+        uvec4 at_end[STEPS];
+        uint beyond[STEPS];
+        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+            uint i = min(first + k, degree - 1u);
+            at_end[k] = positions.at[ends[i] < DELETED ? ends[i] : v];
+            beyond[k] = links.at[next_edge(spokes[i])];
+        }
+        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+            where[first + k] = at_end[k];
+            across[first + k] = beyond[k];
+        }
     }
     make_ring(degree);
     bool is_inner = ghost == NONE;
@@ -300,16 +314,26 @@ void main() {
         uint degree = 0u;
         uint ghost = NONE;
         uint h = start;
-        do {
-            spokes[degree] = h;
-            ends[degree] = destination(triangles, h);
-            h = rotate_ccw(links, h);
-            degree++;
-        } while (h != start && degree < MOST);
-        for (uint k = 0u; k < degree; k++) {
-            ghost = ends[k] == GHOST ? k : ghost;
+        bool closed = false;
+        for (uint first = 0u; first < MOST && !closed; first += STEPS) {
+            uint spoke[STEPS];
+            uint end[STEPS];
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                spoke[k] = h;
+                end[k] = destination(triangles, h);
+                if (!closed) {
+                    degree++;
+                    h = rotate_ccw(links, h);
+                    closed = h == start;
+                }
+            }
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                spokes[first + k] = spoke[k];
+                ends[first + k] = end[k];
+                ghost = end[k] == GHOST && first + k < degree ? first + k : ghost;
+            }
         }
-        if (h != start || !cut_small(v, degree, ghost)) {
+        if (!closed || !cut_small(v, degree, ghost)) {
             deferred.at[append(words, OUT_DEFERRED + round)] = start;
         }
     }

@@ -22,12 +22,12 @@ void main() {
     uint count = words.at[BAD];
     for (uint i = first_item(); i < count; i += item_stride()) {
         uint v = all.at[i];
-        positions.at[v] = points.at[order.at[v]];
-        if (is_empty) {
+        uint heir = state.at[v];
+        if (heir == v) {
             continue;
         }
-        uint heir = state.at[v];
-        if (heir != v) {
+        positions.at[v] = points.at[order.at[v]];
+        if (!is_empty) {
             // An heir goes in a later round than the vertex that names it.
             for (uint step = 0u; step <= words.at[OUT_ROUNDS] && state.at[heir] != heir; step++) {
                 heir = state.at[heir];

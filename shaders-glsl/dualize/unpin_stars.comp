@@ -1,5 +1,5 @@
 // Unpin: tries the pinned sites whose turn it is at their true positions, and frees those around which the triangles stay
-// counterclockwise. The others wait for the next round.
+// counterclockwise. The others wait for the next round, and remember whom for: while that one waits, so do they.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shift.glsl"
@@ -21,6 +21,79 @@ layout(push_constant, std430) uniform Args {
     uint again;    // whether the deferred ones are to be decided
 };
 
+// Of the neighbors that have to be tried before v, the one with the highest priority, or NONE.
+uint last_before(uint start, uint v, uint stamp) {
+    uint mine = priority(v);
+    uint other = NONE;
+    uint most = 0u;
+    uint h = start;
+    bool closed = false;
+    for (uint steps = 0u; !closed && steps < MOST_TRIANGLES_OF_STAR; steps += STEPS) {
+        uint ends[STEPS];
+        uint states[STEPS];
+        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+            ends[k] = apex(triangles, h);
+            if (!closed) {
+                h = rotate_ccw(links, h);
+                closed = h == start;
+            }
+        }
+        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+            states[k] = state.at[ends[k] < DELETED ? ends[k] : v];
+        }
+        // What is behind the last spoke repeats the first.
+        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+            uint theirs = priority(ends[k]);
+            if (ends[k] < DELETED && theirs < mine && theirs >= most && is_waiting(states[k], stamp)) {
+                other = ends[k];
+                most = theirs;
+            }
+        }
+    }
+    if (!closed) {
+        note_broken(words, v);
+    }
+    return other;
+}
+
+// Whether the triangles around v are counterclockwise with v at this place; or open, if that is not decided.
+bool stays_counterclockwise(uint start, uint v, uvec4 at, out bool open) {
+    open = false;
+    uint u = destination(triangles, start);
+    uvec4 at_u = positions.at[u < DELETED ? u : v];
+    uint h = start;
+    bool closed = false;
+    for (uint steps = 0u; !closed && steps < MOST_TRIANGLES_OF_STAR; steps += STEPS) {
+        uint ends[STEPS]; // of the next spokes
+        uvec4 where[STEPS];
+        uint count = 0u;
+        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+            ends[k] = apex(triangles, h);
+            if (!closed) {
+                count++;
+                h = rotate_ccw(links, h);
+                closed = h == start;
+            }
+        }
+        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+            where[k] = positions.at[ends[k] < DELETED ? ends[k] : v];
+        }
+        [[dont_unroll]] for (uint k = 0u; k < count; k++) {
+            uint w = ends[k];
+            if (max(u, w) < DELETED) {
+                int sign = orient2d(at, at_u, where[k]);
+                open = open || sign == UNDECIDED;
+                if (sign != 1 && sign != UNDECIDED) {
+                    return false;
+                }
+            }
+            u = w;
+            at_u = where[k];
+        }
+    }
+    return true;
+}
+
 void main() {
     uint count = words.at[again != 0u ? UNPIN_DEFERRED + round : UNPIN_COUNTS + round];
     bool is_first = round == 0u && words.at[UNPIN_STARTED] == 1u;
@@ -28,57 +101,21 @@ void main() {
     for (uint i = first_item(); i < count; i += item_stride()) {
         uint start = again != 0u ? deferred.at[i] : is_first ? all.at[i] : waiting.at[i];
         uint v = origin(triangles, start);
-        uint mine = priority(v);
-        uvec4 at = points.at[order.at[v]];
-        bool beaten = false;
-        bool stuck = false;
-        bool open = false;
-        uint u = destination(triangles, start);
-        uvec4 at_u = positions.at[u < DELETED ? u : v];
-        uint h = start;
-        uint steps = 0u;
-        bool closed = false;
-        while (!closed && !beaten && steps < MOST_TRIANGLES_OF_STAR) {
-            uint ends[STEPS]; // of the next spoke
-            uint states[STEPS];
-            uvec4 where[STEPS];
-            uint count = 0u;
-            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
-                ends[k] = apex(triangles, h);
-                if (!closed) {
-                    count++;
-                    h = rotate_ccw(links, h);
-                    closed = h == start;
-                }
-            }
-            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
-                uint w = ends[k] < DELETED ? ends[k] : v;
-                states[k] = state.at[w];
-                where[k] = positions.at[w];
-            }
-            // Each neighbor is the end of one spoke; what is behind the last one repeats the first.
-            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
-                beaten = beaten || ends[k] < DELETED && priority(ends[k]) < mine && is_waiting(states[k], stamp);
-            }
-            [[dont_unroll]] for (uint k = 0u; k < count && !beaten && !stuck; k++) {
-                uint w = ends[k];
-                if (max(u, w) < DELETED) {
-                    int sign = orient2d(at, at_u, where[k]);
-                    open = open || sign == UNDECIDED;
-                    stuck = sign != 1 && sign != UNDECIDED;
-                }
-                u = w;
-                at_u = where[k];
-            }
-            steps += STEPS;
-        }
-        if (beaten) {
+        if (again == 0u && !is_first && is_waiting(state.at[state.at[v] & PLACE], stamp)) {
             later.at[append(words, UNPIN_COUNTS + round + 1u)] = start;
             continue;
         }
-        if (!closed) {
-            note_broken(words, v);
+        if (again == 0u) {
+            uint other = last_before(start, v, stamp);
+            if (other != NONE) {
+                state.at[v] = PINNED | other;
+                later.at[append(words, UNPIN_COUNTS + round + 1u)] = start;
+                continue;
+            }
         }
+        uvec4 at = points.at[order.at[v]];
+        bool open = false;
+        bool stuck = !stays_counterclockwise(start, v, at, open);
         if (open && !stuck) {
             deferred.at[append(words, UNPIN_DEFERRED + round)] = start;
             continue;

@@ -274,7 +274,7 @@ impl Shader for PinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "9e2e16fa92b6fd2f0be4e0b8680f5bb6e65302fc503589d161cd692ee43796eb",
+        source_hash: "2db7486beaf71fb221e74fa7c267244629a34ce526c39b3c9b48984ef831cc87",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -365,7 +365,7 @@ impl Shader for PinTriangles {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "59003b979f68c6ab55e2a5dc223af6865b0003833425d8df0344caa8596febab",
+        source_hash: "c9eb40ff64923f721bbd7c4282d0aeed844c540669ab4ba5d76e502f091c1bfe",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -418,7 +418,7 @@ impl Shader for ShiftAdvance {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "810c93e5d9320da4eb464cf01dbdfa30c5853069e10fa4fb6021719e439c0c46",
+        source_hash: "5cd7fcd9ec371a4813933e3de3d3846c0ff182aaf25294ada0fe84fa7f536b19",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -471,7 +471,7 @@ impl Shader for ShiftMove {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "2ae929c7dc3014a866f36b6420eb165b15bc8d0788b8e515065f6577bf1ed7af",
+        source_hash: "e2614e3e594c440bacc8753434cf51e991df3d82d3f2c1f23a50802258e50497",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -557,7 +557,7 @@ impl Shader for TakeoutCut {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "b939503decf247726cc0eb2214d09ffe057183d2d96037d01778b3f0ad25b05e",
+        source_hash: "fe3331271c9b2babce57f9ee769eab30263d762c4fe8550933fce0ea51d48a70",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -623,7 +623,7 @@ impl Shader for TakeoutElect {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "648213b672afbfbec409ad33e61b67c604cc64c01b283a18b3ca4a57478e723b",
+        source_hash: "e037651866ed63d3183e738bc3f0bab48c3c34ef3c3a44e4e834f967f225f07d",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -691,7 +691,7 @@ impl Shader for TakeoutHeirs {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "8dc008f4e9a9f2042031d9a4d9867acc8909ccf6530ab33a1b3dfb8221ebac18",
+        source_hash: "644bbed2fe9dee06978b9adf9e3624363adcffdf7e441f7818224c3dbf1aa7d0",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -752,7 +752,7 @@ impl Shader for TakeoutLink {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "10bce510bd7f2a90967ab347a06d6425787bf172a3e58ff45ce573f7119fc6d3",
+        source_hash: "1c8617a9ec48057bae7d69f34a81fff6e4bf07774b65e49d1e1355ced0419541",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -805,7 +805,7 @@ impl Shader for UnpinFinish {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "b5162bfd6168d10b1c855cc8515703ea50d2564d9bab0f8a29eeb5127875390c",
+        source_hash: "02ffff25bcc3f926aa73c06bffd265d1670620f3b6f2463594c112d6acb52367",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -819,7 +819,7 @@ impl Shader for UnpinFinish {
 }
 
 /// Unpin: tries the pinned sites whose turn it is at their true positions, and frees those around which the triangles stay
-/// counterclockwise. The others wait for the next round.
+/// counterclockwise. The others wait for the next round, and remember whom for: while that one waits, so do they.
 #[derive(Debug, Clone, Copy)]
 pub enum UnpinStars {}
 
@@ -888,7 +888,7 @@ impl Shader for UnpinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "8501477c36826b1ab3205aab7586d5d75202685af0ff9f234f83df5e7af0b0d4",
+        source_hash: "8f877166eb42940bb4e55247b93f2532ada89184090e6256293856a019f29c86",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

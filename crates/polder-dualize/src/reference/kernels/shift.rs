@@ -1,7 +1,8 @@
 //! The kernels of stage 3 but for those that take sites out.
 //!
 //! The state of a site that is not pinned is its number. That of a pinned one has the bit [`PINNED`], and its place in the
-//! list of pinned sites, until it is tried: then [`TRIED`], the round, and [`FREED`] if that went well. What is appended to
+//! list of pinned sites, then the neighbor that it waits for, and once it is tried [`TRIED`], the round, and [`FREED`] if
+//! that went well. What is appended to
 //! a list on the device in order of arrival is ascending here.
 
 use super::super::star::star;
@@ -90,7 +91,8 @@ pub fn pin_stars(
     pin_triangles(mesh, positions, state, around)
 }
 
-/// Tries the origins of those half-edges `waiting` whose turn it is, and returns the others.
+/// Tries the origins of those half-edges `waiting` whose turn it is, and returns the others, which remember whom they wait
+/// for: in rounds but the first, they wait while that one does.
 pub fn unpin_stars(
     mesh: &GhostMesh,
     truth: &[DVec2],
@@ -99,10 +101,25 @@ pub fn unpin_stars(
     waiting: &[u32],
     round: u32,
 ) -> Vec<u32> {
-    let is_waiting = |state: u32| state & PINNED != 0 && state & TRIED == 0;
-    let is_beaten = |v: u32, u: u32| u < DELETED && priority(u) < priority(v) && is_waiting(state[u as usize]);
-    let beaten = |h: u32| star(mesh, h).any(|spoke| is_beaten(mesh.origin(h), mesh.destination(spoke)));
-    let (later, turn): (Vec<u32>, Vec<u32>) = waiting.iter().partition(|&&h| beaten(h));
+    let before = state.to_vec();
+    let is_waiting = |u: u32| before[u as usize] & PINNED != 0 && before[u as usize] & TRIED == 0;
+    let (mut turn, mut later) = (Vec::new(), Vec::new());
+    for &h in waiting {
+        let v = mesh.origin(h);
+        if round > 0 && is_waiting(before[v as usize] & !PINNED) {
+            later.push(h);
+            continue;
+        }
+        let ends = star(mesh, h).map(|spoke| mesh.destination(spoke));
+        let earlier = ends.filter(|&u| u < DELETED && priority(u) < priority(v) && is_waiting(u));
+        match earlier.max_by_key(|&u| priority(u)) {
+            Some(u) => {
+                state[v as usize] = PINNED | u;
+                later.push(h);
+            }
+            None => turn.push(h),
+        }
+    }
     for h in turn {
         let v = mesh.origin(h) as usize;
         let before = std::mem::replace(&mut positions[v], truth[v]);
