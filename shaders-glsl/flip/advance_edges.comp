@@ -1,20 +1,18 @@
 // The end of a round and the beginning of the next in one: renews the links around all flips, gives claimed triangles back,
 // and tests the edges that are handed on, which claim their triangles for the next round. An illegal edge next to no flip
-// is known to be illegal. What the filter leaves open is deferred to `test_edges` with exact arithmetic.
+// is known to be illegal.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "found.glsl"
+#include "appending.glsl"
+#include "verdict.glsl"
 
 layout(push_constant, std430) uniform Args {
     ReadU32 triangles;
     U32 links;
     ReadPoints positions;
-    WriteU32 claims; // of this round
-    U32 next_claims;
-    ReadU32 stamps;
+    U32 state;
     ReadU32 illegal; // of this round
     WriteU32 next_illegal;
-    WriteU32 deferred;
     MaybeWriteU32 also; // a list that all edges handed on are appended to
     MaybeU32 also_count;
     U32 words;
@@ -25,7 +23,6 @@ layout(push_constant, std430) uniform Args {
 };
 
 shared uint tests_of_group;
-shared uint also_place;
 
 void main() {
     uint taken = words.at[TAKEN_COUNT];
@@ -45,7 +42,7 @@ void main() {
     uint tests = 0u;
     for (uint begin = group_index() * WORKGROUP; begin < end; begin += item_stride()) {
         uint i = begin + gl_LocalInvocationIndex;
-        uint found = LEGAL;
+        bool illegal_edge = false;
         Handed handed;
         handed.some = false;
         if (i < end) {
@@ -55,9 +52,9 @@ void main() {
                 h &= HALF_EDGE;
                 uint g = prev_edge(links.at[next_edge(h)]);
                 if (k < 2u) {
-                    claims.at[(k == 0u ? h : g) / 3u] = NONE;
+                    state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
                 }
-                handed = renew(links, U32(stamps), round, side_of(h, g, k));
+                handed = renew(links, state, round, side_of(h, g, k));
                 if (handed.some) {
                     uint b = origin(triangles, handed.side);
                     uint c = destination(triangles, handed.side);
@@ -65,33 +62,26 @@ void main() {
                         tests++;
                         if (handed.mark == 0u) {
                             uint a = apex(triangles, handed.side);
-                            found = verdict(positions, a, b, c, apex(triangles, handed.outer));
+                            illegal_edge = is_illegal(positions, a, b, c, apex(triangles, handed.outer));
                         }
                     }
                 }
             } else if (k == 0u) {
-                handed = leave(links, U32(claims), U32(stamps), round, h);
-                found = handed.some ? ILLEGAL : LEGAL;
+                handed = leave(links, state, parity, round, h);
+                illegal_edge = handed.some;
                 tests += uint(handed.some);
             }
         }
         uint lower = min(handed.side, handed.outer);
-        uvec2 place = places_for(words, parity ^ 1u, uint(found == ILLEGAL), uint(found == OPEN));
-        if (found == ILLEGAL) {
-            claim(next_claims, lower, max(handed.side, handed.outer));
-            next_illegal.at[place.x] = lower;
-        } else if (found == OPEN) {
-            deferred.at[place.y] = lower;
+        uint place = place_in(words, ILLEGAL_COUNT(parity ^ 1u), illegal_edge);
+        if (illegal_edge) {
+            claim(state, parity ^ 1u, lower, max(handed.side, handed.outer));
+            next_illegal.at[place] = lower;
         }
         if (present(also)) {
-            uint total;
-            uint before = sum_before(uint(handed.some), total);
-            if (gl_LocalInvocationIndex == 0u && total != 0u) {
-                also_place = atomicAdd(also_count.at[0], total);
-            }
-            barrier();
-            if (handed.some && also_place + before < also_limit) {
-                also.at[also_place + before] = lower;
+            place = place_in(U32(also_count), 0u, handed.some);
+            if (handed.some && place < also_limit) {
+                also.at[place] = lower;
             }
         }
     }

@@ -7,8 +7,7 @@
 layout(push_constant, std430) uniform Args {
     U32 triangles;
     U32 links;
-    ReadU32 claims;
-    U32 stamps;
+    U32 state;
     U32 illegal;
     MaybeReadU32 edges; // the list that was tested, to be emptied
     MaybeU32 edge_count;
@@ -34,10 +33,10 @@ void main() {
     for (uint i = item_index(); i < end; i += item_stride()) {
         uint h = illegal.at[i];
         uint mine = priority(h);
-        if (claims.at[h / 3u] == mine) {
+        if (state.at[CLAIM(h, parity)] == mine) {
             uint g = links.at[h];
-            if (claims.at[g / 3u] == mine) {
-                flip_pair(triangles, links, stamps, round, h, g);
+            if (state.at[CLAIM(g, parity)] == mine) {
+                flip_pair(triangles, links, state, round, h, g);
                 illegal.at[i] = h | WON;
                 flips++;
             }
@@ -62,7 +61,6 @@ void main() {
     if (item_index() == 0u) {
         words.at[TAKEN_COUNT] = end;
         words.at[ROUND_NOW] = round;
-        words.at[DEFERRED_COUNT] = 0u;
         words.at[ANY_TESTED] = 0u;
         if (present(edge_count)) {
             edge_count.at[0] = 0u;

@@ -10,10 +10,8 @@ layout(push_constant, std430) uniform Args {
     SharedU32 triangles;
     SharedU32 links;
     ReadPoints positions;
-    SharedU32 claims_0; // of even rounds
-    SharedU32 claims_1;
-    SharedU32 stamps;
-    SharedU32 illegal_0;
+    SharedU32 state;
+    SharedU32 illegal_0; // of even rounds
     SharedU32 illegal_1;
     MaybeWriteU32 also; // a list that all edges handed on are appended to
     MaybeU32 also_count;
@@ -45,13 +43,9 @@ void main() {
     uint parity = words.at[ILLEGAL_COUNT(0u)] != 0u ? 0u : 1u;
     uint count = words.at[ILLEGAL_COUNT(parity)];
     uint round = words.at[ROUND];
-    SharedU32 claims = claims_0;
-    SharedU32 next_claims = claims_1;
     SharedU32 illegal = illegal_0;
     SharedU32 next_illegal = illegal_1;
     if (parity == 1u) {
-        claims = claims_1;
-        next_claims = claims_0;
         illegal = illegal_1;
         next_illegal = illegal_0;
     }
@@ -82,10 +76,10 @@ void main() {
             uint mine = priority(h);
             // Whoever does not have the first triangle may read what another changes, and does not look at it.
             uint g = near ? near_upper[parity * NEAR + i] : links.at[h] & HALF_EDGE;
-            bool first = claims.at[h / 3u] == mine;
-            bool second = claims.at[g / 3u] == mine;
+            bool first = state.at[CLAIM(h, parity)] == mine;
+            bool second = state.at[CLAIM(g, parity)] == mine;
             if (first && second) {
-                flip_pair(triangles, links, stamps, round, h, g);
+                flip_pair(triangles, links, state, round, h, g);
                 atomicAdd(flips, 1u);
                 if (near) {
                     near_lower[parity * NEAR + i] = h | WON;
@@ -99,16 +93,16 @@ void main() {
             bool near = (i >> 2) < NEAR;
             uint h = near ? near_lower[parity * NEAR + (i >> 2)] : illegal.at[i >> 2];
             uint k = i & 3u;
-            uint found = LEGAL;
+            bool illegal_edge = false;
             Handed handed;
             handed.some = false;
             if ((h & WON) != 0u) {
                 h &= HALF_EDGE;
                 uint g = near ? near_upper[parity * NEAR + (i >> 2)] : prev_edge(links.at[next_edge(h)]);
                 if (k < 2u) {
-                    claims.at[(k == 0u ? h : g) / 3u] = NONE;
+                    state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
                 }
-                handed = renew(links, stamps, round, side_of(h, g, k));
+                handed = renew(links, state, round, side_of(h, g, k));
                 if (handed.some) {
                     uint b = origin(triangles, handed.side);
                     uint c = destination(triangles, handed.side);
@@ -116,21 +110,21 @@ void main() {
                         atomicAdd(tests, 1u);
                         if (handed.mark == 0u) {
                             uint a = apex(triangles, handed.side);
-                            found = verdict(positions, a, b, c, apex(triangles, handed.outer));
+                            illegal_edge = is_illegal(positions, a, b, c, apex(triangles, handed.outer));
                         }
                     }
                 }
             } else if (k == 0u) {
-                handed = leave(links, claims, stamps, round, h);
+                handed = leave(links, state, parity, round, h);
                 if (handed.some) {
                     atomicAdd(tests, 1u);
-                    found = ILLEGAL;
+                    illegal_edge = true;
                 }
             }
-            if (found == ILLEGAL) {
+            if (illegal_edge) {
                 uint lower = min(handed.side, handed.outer);
                 uint upper = max(handed.side, handed.outer);
-                claim(next_claims, lower, upper);
+                claim(state, parity ^ 1u, lower, upper);
                 uint place = atomicAdd(next_count[parity], 1u);
                 if (place < NEAR) {
                     near_lower[(parity ^ 1u) * NEAR + place] = lower;
@@ -149,10 +143,7 @@ void main() {
         wait();
         count = next_count[parity];
         parity ^= 1u;
-        SharedU32 other = claims;
-        claims = next_claims;
-        next_claims = other;
-        other = illegal;
+        SharedU32 other = illegal;
         illegal = next_illegal;
         next_illegal = other;
     }

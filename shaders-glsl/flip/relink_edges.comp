@@ -2,13 +2,11 @@
 // edges of the next round: those around flips, and illegal ones next to no flip. No edge is listed twice.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "rounds.glsl"
-#include "workgroup_scan.glsl"
+#include "appending.glsl"
 
 layout(push_constant, std430) uniform Args {
     U32 links;
-    U32 claims;
-    ReadU32 stamps;
+    U32 state;
     ReadU32 illegal;
     WriteU32 edges;
     U32 edge_count;
@@ -16,8 +14,6 @@ layout(push_constant, std430) uniform Args {
     uint limit; // edges that the list takes
     uint parity;
 };
-
-shared uint place;
 
 void main() {
     uint end = 4u * words.at[TAKEN_COUNT];
@@ -37,21 +33,16 @@ void main() {
                 h &= HALF_EDGE;
                 uint g = prev_edge(links.at[next_edge(h)]);
                 if (k < 2u) {
-                    claims.at[(k == 0u ? h : g) / 3u] = NONE;
+                    state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
                 }
-                handed = renew(links, U32(stamps), round, side_of(h, g, k));
+                handed = renew(links, state, round, side_of(h, g, k));
             } else if (k == 0u) {
-                handed = leave(links, claims, U32(stamps), round, h);
+                handed = leave(links, state, parity, round, h);
             }
         }
-        uint total;
-        uint before = sum_before(uint(handed.some), total);
-        if (gl_LocalInvocationIndex == 0u && total != 0u) {
-            place = atomicAdd(edge_count.at[0], total);
-        }
-        barrier();
-        if (handed.some && place + before < limit) {
-            edges.at[place + before] = min(handed.side, handed.outer);
+        uint place = place_in(edge_count, 0u, handed.some);
+        if (handed.some && place < limit) {
+            edges.at[place] = min(handed.side, handed.outer);
         }
     }
 }

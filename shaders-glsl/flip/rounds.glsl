@@ -16,17 +16,15 @@ BUFFER(MaybeU32, uint, 4, );
 
 // The words that steer rounds. Illegal edges, of even and of odd rounds: at 4 times the parity.
 #define ILLEGAL_COUNT(PARITY) (4u * (PARITY))
-// Edges that the filter left open.
-const uint DEFERRED_COUNT = 8u;
 // Illegal edges that this round takes: all, or none where it is another kernel's turn.
-const uint TAKEN_COUNT = 9u;
-// The number of the last round, which never repeats while the stamps are kept; and of this one.
-const uint ROUND = 10u;
-const uint ROUND_NOW = 11u;
+const uint TAKEN_COUNT = 8u;
+// The number of the last round, which never repeats while the state is kept; and of this one.
+const uint ROUND = 9u;
+const uint ROUND_NOW = 10u;
 // Whether any edge of the mesh was tested.
-const uint ANY_TESTED = 12u;
+const uint ANY_TESTED = 11u;
 // Edges of the list that was tested.
-const uint LISTED_COUNT = 13u;
+const uint LISTED_COUNT = 12u;
 // Illegal edges after the tail.
 const uint PENDING_COUNT = 16u;
 
@@ -58,17 +56,21 @@ void add_wide(WORDS words, uint at, uint value) {
     }
 }
 
+// By triangle, three words of state: the least priority that claims it, in even and in odd rounds, else NONE; and its stamp:
+// four times the last round that flipped it, plus the edge along which it was.
+#define CLAIM(H, PARITY) ((H) / 3u * 3u + (PARITY))
+#define STAMP(H) ((H) / 3u * 3u + 2u)
+
 // Step 2: an illegal edge claims its two triangles, in the name of its lower half-edge.
-void claim(WORDS claims, uint lower, uint upper) {
+void claim(WORDS state, uint parity, uint lower, uint upper) {
     uint mine = priority(lower);
-    atomicMin(claims.at[lower / 3u], mine);
-    atomicMin(claims.at[upper / 3u], mine);
+    atomicMin(state.at[CLAIM(lower, parity)], mine);
+    atomicMin(state.at[CLAIM(upper, parity)], mine);
 }
 
 // Step 3, first half: flips h, whose twin is g, if it has both its triangles; then nobody else touches their links. Outer
-// links keep the names that they had before the round. A triangle's stamp says that it was flipped in this round, and
-// along which edge.
-void flip_pair(WORDS triangles, WORDS links, WORDS stamps, uint round, uint h, uint g) {
+// links keep the names that they had before the round.
+void flip_pair(WORDS triangles, WORDS links, WORDS state, uint round, uint h, uint g) {
     uint h1 = next_edge(h);
     uint g1 = next_edge(g);
     uint t_outer = links.at[h1];
@@ -81,8 +83,8 @@ void flip_pair(WORDS triangles, WORDS links, WORDS stamps, uint round, uint h, u
     links.at[g] = t_outer;
     links.at[h1] = g1;
     links.at[g1] = h1;
-    stamps.at[h / 3u] = round << 2 | h % 3u;
-    stamps.at[g / 3u] = round << 2 | g % 3u;
+    state.at[STAMP(h)] = round << 2 | h % 3u;
+    state.at[STAMP(g)] = round << 2 | g % 3u;
 }
 
 // What is left of a side of a round's item for the next round.
@@ -102,13 +104,13 @@ uint side_of(uint h, uint g, uint k) {
 // Step 3, second half, after all flips of the round: renews the link of an outer side. The outer edge behind the flipped one
 // went over to the other triangle, on this side as on the far side. An edge between two flips is renewed and handed on by
 // both sides alike, but only the lower one hands it on.
-Handed renew(WORDS links, WORDS stamps, uint round, uint side) {
+Handed renew(WORDS links, WORDS state, uint round, uint side) {
     Handed handed;
     handed.side = side;
     uint outer = links.at[side];
     handed.mark = outer & CONSTRAINED;
     outer &= HALF_EDGE;
-    uint stamp = stamps.at[outer / 3u];
+    uint stamp = state.at[STAMP(outer)];
     bool flipped = stamp >> 2 == round;
     if (flipped) {
         uint edge = outer - outer % 3u + (stamp & 3u);
@@ -124,18 +126,18 @@ Handed renew(WORDS links, WORDS stamps, uint round, uint side) {
 
 // The same for an illegal edge that was not flipped: it stays active, unless a flip beside it hands it on. It gives back what
 // it claimed. A link that another invocation renews meanwhile leads to the same triangles before and after.
-Handed leave(WORDS links, WORDS claims, WORDS stamps, uint round, uint h) {
-    uint stamp = stamps.at[h / 3u];
+Handed leave(WORDS links, WORDS state, uint parity, uint round, uint h) {
+    uint stamp = state.at[STAMP(h)];
     bool flipped = stamp >> 2 == round;
     uint side = h;
     if (flipped && h == next_edge(h - h % 3u + (stamp & 3u))) {
         side = prev_edge(links.at[h]);
     }
     uint g = twin(links, side);
-    claims.at[h / 3u] = NONE;
-    claims.at[g / 3u] = NONE;
+    state.at[CLAIM(h, parity)] = NONE;
+    state.at[CLAIM(g, parity)] = NONE;
     Handed handed;
-    handed.some = !flipped && stamps.at[g / 3u] >> 2 != round;
+    handed.some = !flipped && state.at[STAMP(g)] >> 2 != round;
     handed.side = h;
     handed.outer = g;
     handed.mark = 0u;

@@ -1,19 +1,19 @@
 // Steps 1 and 2 of a round over a list, in which edges may repeat: each is tested once, and illegal ones claim their two
-// triangles. What the filter leaves open is deferred to the same kernel with exact arithmetic, which runs over it next.
+// triangles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "found.glsl"
+#include "appending.glsl"
+#include "verdict.glsl"
 
 layout(push_constant, std430) uniform Args {
     ReadU32 triangles;
     ReadU32 links;
     ReadPoints positions;
     U32 edges;
-    MaybeReadU32 edge_count; // left out: the edges are those that were deferred
-    MaybeU32 listed; // a bit for each half-edge, all zero
-    U32 claims;
+    ReadU32 edge_count;
+    U32 listed; // a bit for each half-edge, all zero
+    U32 state;
     WriteU32 illegal;
-    WriteU32 deferred;
     U32 words;
     U32 report;
     uint limit; // edges that the list takes
@@ -38,11 +38,10 @@ bool take(uint i, inout uint h) {
 }
 
 void main() {
-    bool again = !present(edge_count);
-    uint count = min(again ? words.at[DEFERRED_COUNT] : edge_count.at[0], limit);
+    uint count = min(edge_count.at[0], limit);
     if (gl_LocalInvocationIndex == 0u) {
         tests_of_group = 0u;
-        if (item_index() == 0u && !again) {
+        if (item_index() == 0u) {
             words.at[LISTED_COUNT] = count;
             report.at[REPORT_ROUNDS] += uint(count != 0u);
         }
@@ -52,38 +51,34 @@ void main() {
     // The same number of turns for the whole workgroup.
     for (uint begin = group_index() * WORKGROUP; begin < count; begin += item_stride()) {
         uint i = begin + gl_LocalInvocationIndex;
-        uint found = LEGAL;
+        bool illegal_edge = false;
         uint h = 0u;
         uint g = 0u;
         if (i < count) {
             h = edges.at[i];
-            if (again || take(i, h)) {
+            if (take(i, h)) {
                 g = links.at[h];
                 uint b = origin(triangles, h);
                 uint c = destination(triangles, h);
-                if (again || scope == SCOPE_ALL || b == GHOST || c == GHOST) {
+                if (scope == SCOPE_ALL || b == GHOST || c == GHOST) {
                     tests++;
                     if ((g & CONSTRAINED) == 0u) {
-                        found = verdict(positions, apex(triangles, h), b, c, apex(triangles, g));
+                        illegal_edge = is_illegal(positions, apex(triangles, h), b, c, apex(triangles, g));
                     }
                 }
             }
         }
-        uvec2 place = places_for(words, parity, uint(found == ILLEGAL), uint(found == OPEN));
-        if (found == ILLEGAL) {
-            claim(claims, h, g);
-            illegal.at[place.x] = h;
-        } else if (found == OPEN) {
-            deferred.at[place.y] = h;
+        uint place = place_in(words, ILLEGAL_COUNT(parity), illegal_edge);
+        if (illegal_edge) {
+            claim(state, parity, h, g);
+            illegal.at[place] = h;
         }
     }
-    if (!again) {
-        if (tests != 0u) {
-            atomicAdd(tests_of_group, tests);
-        }
-        barrier();
-        if (gl_LocalInvocationIndex == 0u && tests_of_group != 0u) {
-            add_wide(report, REPORT_TESTS, tests_of_group);
-        }
+    if (tests != 0u) {
+        atomicAdd(tests_of_group, tests);
+    }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u && tests_of_group != 0u) {
+        add_wide(report, REPORT_TESTS, tests_of_group);
     }
 }

@@ -50,31 +50,30 @@ fn cases() -> Vec<Case> {
 /// A case on the device.
 struct Uploaded {
     mesh: Mesh,
-    claims: Buffer<u32>,
-    next_claims: Buffer<u32>,
-    stamps: Buffer<u32>,
+    state: Buffer<u32>,
     list: Buffer<u32>,
     list_count: Buffer<u32>,
     out: Buffer<u32>,
     also: Buffer<u32>,
     also_count: Buffer<u32>,
-    deferred: Buffer<u32>,
     listed: Buffer<u32>,
     words: Buffer<u32>,
     report: Buffer<u32>,
 }
 
+/// Integers behind the f64 filter.
+const EXACT: &[(&str, u32)] = &[("ARITHMETIC", 1)];
 /// Places of the words that steer rounds: illegal edges at 0 for even rounds and at 4 for odd ones.
-const DEFERRED: usize = 8;
-const TAKEN: usize = 9;
-const ROUND: usize = 10;
-const ROUND_NOW: usize = 11;
-const ANY_TESTED: usize = 12;
-const LISTED: usize = 13;
+const TAKEN: usize = 8;
+const ROUND: usize = 9;
+const ROUND_NOW: usize = 10;
+const ANY_TESTED: usize = 11;
+const LISTED: usize = 12;
 const PENDING: usize = 16;
 
 impl Uploaded {
-    fn new(gpu: &mut Gpu, case: &Case, list: &[u32], words: &[(usize, u32)]) -> Self {
+    /// With its claims as those of rounds of this parity.
+    fn new(gpu: &mut Gpu, case: &Case, parity: usize, list: &[u32], words: &[(usize, u32)]) -> Self {
         let slots = case.mesh.slots();
         let mesh = Mesh::with_slots(&gpu.device, case.positions.len(), slots).unwrap();
         mesh.upload(&mut gpu.engine, &case.mesh, &case.positions).unwrap();
@@ -86,15 +85,12 @@ impl Uploaded {
         padded.resize(room, 7);
         Self {
             mesh,
-            claims: gpu.buffer(&case.scratch.claims),
-            next_claims: gpu.buffer(&vec![NONE; slots]),
-            stamps: gpu.buffer(&case.scratch.stamps),
+            state: gpu.buffer(&state_of(&case.scratch, parity)),
             list: gpu.buffer(&padded),
             list_count: gpu.buffer(&[list.len() as u32]),
             out: gpu.buffer(&vec![7; room]),
             also: gpu.buffer(&vec![7; room]),
             also_count: gpu.buffer(&[2]),
-            deferred: gpu.buffer(&vec![7; room]),
             listed: gpu.buffer(&vec![0; 3 * slots / 32 + 1]),
             words: gpu.buffer(&all),
             report: gpu.buffer(&[0; 8]),
@@ -115,37 +111,6 @@ impl Uploaded {
     fn sorted(&self, gpu: &mut Gpu, list: &Buffer<u32>, from: usize, count: usize) -> Vec<u32> {
         sorted(gpu.fetch(list.view())[from..from + count].to_vec())
     }
-
-    /// What the filter left of `test_mesh` or `advance_edges`.
-    fn test_deferred(&self, gpu: &mut Gpu, claims: &Buffer<u32>, illegal: &Buffer<u32>, parity: u32) {
-        let arguments = self.test_arguments(&self.deferred, claims, illegal, parity);
-        run::<TestEdges>(gpu, &[("ARITHMETIC", 1)], 2, &arguments);
-    }
-
-    fn test_arguments<'a>(
-        &'a self,
-        edges: &'a Buffer<u32>,
-        claims: &'a Buffer<u32>,
-        illegal: &'a Buffer<u32>,
-        parity: u32,
-    ) -> TestEdgesArgs<'a> {
-        TestEdgesArgs {
-            triangles: self.mesh.corners(),
-            links: self.mesh.twins(),
-            positions: self.mesh.positions().cast(),
-            edges: edges.view(),
-            edge_count: None,
-            listed: None,
-            claims: claims.view(),
-            illegal: illegal.view(),
-            deferred: self.deferred.view(),
-            words: self.words.view(),
-            report: self.report.view(),
-            limit: edges.len() as u32,
-            scope: 0,
-            parity,
-        }
-    }
 }
 
 fn run<S: Shader>(gpu: &mut Gpu, constants: &[(&'static str, u32)], groups: u32, arguments: &S::Args<'_>) {
@@ -153,6 +118,12 @@ fn run<S: Shader>(gpu: &mut Gpu, constants: &[(&'static str, u32)], groups: u32,
     let mut recording = gpu.recording();
     recording.dispatch(&kernel, [groups, 1, 1], arguments);
     gpu.run(&recording);
+}
+
+/// The words of state by triangle; nothing is claimed in rounds of the other parity.
+fn state_of(scratch: &Scratch, parity: usize) -> Vec<u32> {
+    let row = |(&claim, &stamp)| if parity == 0 { [claim, NONE, stamp] } else { [NONE, claim, stamp] };
+    scratch.claims.iter().zip(&scratch.stamps).flat_map(row).collect()
 }
 
 fn sorted(mut list: Vec<u32>) -> Vec<u32> {
@@ -175,14 +146,13 @@ fn test_mesh() {
         for (scope, parity) in [(0, turn as u32 % 2), (1, 0)] {
             let mut scratch = case.scratch.clone();
             let (expected, tests) = kernels::test_mesh(&case.mesh, &case.positions, scope == 1, &mut scratch);
-            let on = Uploaded::new(&mut gpu, case, &[], &[]);
+            let on = Uploaded::new(&mut gpu, case, parity as usize, &[], &[]);
             let arguments = TestMeshArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
-                claims: on.claims.view(),
+                state: on.state.view(),
                 illegal: on.out.view(),
-                deferred: on.deferred.view(),
                 words: on.words.view(),
                 report: on.report.view(),
                 slots: on.mesh.slots(),
@@ -190,11 +160,10 @@ fn test_mesh() {
                 parity,
             };
             let groups = case.mesh.slots().div_ceil(256) as u32;
-            run::<TestMesh>(&mut gpu, &[("ARITHMETIC", 0)], groups + 1, &arguments);
-            on.test_deferred(&mut gpu, &on.claims, &on.out, parity);
+            run::<TestMesh>(&mut gpu, EXACT, groups + 1, &arguments);
             let count = on.word(&mut gpu, 4 * parity as usize) as usize;
             assert_eq!(on.sorted(&mut gpu, &on.out, 0, count), sorted(expected), "{}", case.name);
-            assert_eq!(gpu.fetch(on.claims.view()), scratch.claims, "{}", case.name);
+            assert_eq!(gpu.fetch(on.state.view()), state_of(&scratch, parity as usize), "{}", case.name);
             let rounds = u64::from(tests != 0);
             assert_eq!(on.report(&mut gpu), [rounds, 0, tests], "{}", case.name);
             assert_eq!(u64::from(on.word(&mut gpu, ANY_TESTED)), rounds);
@@ -210,19 +179,26 @@ fn test_edges() {
         let mut scratch = case.scratch.clone();
         let (expected, tests) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, hull_alone, &mut scratch);
         for list in [case.edges.clone(), shuffled(&case.mesh, &case.edges)] {
-            let on = Uploaded::new(&mut gpu, case, &list, &[]);
+            let on = Uploaded::new(&mut gpu, case, 1, &list, &[]);
             let arguments = TestEdgesArgs {
-                edge_count: Some(on.list_count.view()),
-                listed: Some(on.listed.view()),
+                triangles: on.mesh.corners(),
+                links: on.mesh.twins(),
+                positions: on.mesh.positions().cast(),
+                edges: on.list.view(),
+                edge_count: on.list_count.view(),
+                listed: on.listed.view(),
+                state: on.state.view(),
+                illegal: on.out.view(),
+                words: on.words.view(),
+                report: on.report.view(),
+                limit: list.len() as u32,
                 scope: u32::from(hull_alone),
-                ..on.test_arguments(&on.list, &on.claims, &on.out, 1)
+                parity: 1,
             };
-            // First what the filter knows, then the rest.
-            run::<TestEdges>(&mut gpu, &[("ARITHMETIC", 0)], 3, &arguments);
-            on.test_deferred(&mut gpu, &on.claims, &on.out, 1);
+            run::<TestEdges>(&mut gpu, EXACT, 3, &arguments);
             let count = on.word(&mut gpu, 4) as usize;
             assert_eq!(on.sorted(&mut gpu, &on.out, 0, count), sorted(expected.clone()), "{}", case.name);
-            assert_eq!(gpu.fetch(on.claims.view()), scratch.claims, "{}", case.name);
+            assert_eq!(gpu.fetch(on.state.view()), state_of(&scratch, 1), "{}", case.name);
             let rounds = u64::from(!list.is_empty());
             assert_eq!(on.report(&mut gpu), [rounds, 0, tests], "{}", case.name);
             assert_eq!(on.word(&mut gpu, LISTED), list.len() as u32);
@@ -235,16 +211,15 @@ fn flip_edges() {
     let mut gpu = Gpu::open();
     for case in &mut cases() {
         let (illegal, _) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, false, &mut case.scratch);
-        let words = [(4, illegal.len() as u32), (DEFERRED, 5), (LISTED, 1), (ANY_TESTED, 1)];
-        let on = Uploaded::new(&mut gpu, case, &illegal, &words);
+        let words = [(4, illegal.len() as u32), (LISTED, 1), (ANY_TESTED, 1)];
+        let on = Uploaded::new(&mut gpu, case, 1, &illegal, &words);
         let bits = vec![u32::MAX; 3 * case.mesh.slots() / 32 + 1];
         gpu.engine.upload(on.listed.view(), &bits).unwrap();
         let tested = gpu.buffer(&[3_u32, 9]);
         let arguments = FlipEdgesArgs {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
-            claims: on.claims.view(),
-            stamps: on.stamps.view(),
+            state: on.state.view(),
             illegal: on.list.view(),
             edges: Some(tested.view()),
             edge_count: Some(on.list_count.view()),
@@ -256,20 +231,20 @@ fn flip_edges() {
             parity: 1,
         };
         // Too few: then there is nothing to do.
-        let before = gpu.fetch(on.stamps.view());
+        let before = gpu.fetch(on.state.view());
         run::<FlipEdges>(&mut gpu, &[], 2, &arguments);
-        assert_eq!((on.word(&mut gpu, TAKEN), gpu.fetch(on.stamps.view())), (0, before), "{}", case.name);
+        assert_eq!((on.word(&mut gpu, TAKEN), gpu.fetch(on.state.view())), (0, before), "{}", case.name);
         assert_eq!(on.word(&mut gpu, 4), illegal.len() as u32);
         run::<FlipEdges>(&mut gpu, &[], 2, &FlipEdgesArgs { least: illegal.len() as u32, ..arguments });
         let mut expected = illegal.clone();
         let flips = kernels::flip_edges(&mut case.mesh, &mut case.scratch, &mut expected);
         assert_eq!(gpu.fetch(on.list.view())[..expected.len()], expected, "{}", case.name);
         assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
-        assert_eq!(gpu.fetch(on.stamps.view()), case.scratch.stamps, "{}", case.name);
+        assert_eq!(gpu.fetch(on.state.view()), state_of(&case.scratch, 1), "{}", case.name);
         assert_eq!(on.report(&mut gpu), [0, flips, 0], "{}", case.name);
         let words = gpu.fetch(on.words.view());
         assert_eq!([words[TAKEN], words[ROUND_NOW]], [expected.len() as u32, case.scratch.round]);
-        assert_eq!([words[DEFERRED], words[ANY_TESTED]], [0; 2]);
+        assert_eq!(words[ANY_TESTED], 0);
         assert_eq!(gpu.fetch(on.list_count.view()), [0], "the list is emptied");
         assert_eq!(gpu.fetch(on.listed.view())[0], !(1 << 3), "the bit of the one edge that was listed");
     }
@@ -283,12 +258,11 @@ fn relink_edges() {
         kernels::flip_edges(&mut case.mesh, &mut case.scratch, &mut illegal);
         let count = illegal.len() as u32;
         let on =
-            Uploaded::new(&mut gpu, case, &illegal, &[(0, count), (TAKEN, count), (ROUND_NOW, case.scratch.round)]);
+            Uploaded::new(&mut gpu, case, 0, &illegal, &[(0, count), (TAKEN, count), (ROUND_NOW, case.scratch.round)]);
         gpu.engine.upload(on.list_count.view(), &[0]).unwrap();
         let arguments = RelinkEdgesArgs {
             links: on.mesh.twins(),
-            claims: on.claims.view(),
-            stamps: on.stamps.view(),
+            state: on.state.view(),
             illegal: on.list.view(),
             edges: on.out.view(),
             edge_count: on.list_count.view(),
@@ -300,7 +274,8 @@ fn relink_edges() {
         let expected = kernels::relink_edges(&mut case.mesh, &mut case.scratch, &illegal);
         assert!(illegal.iter().all(|h| h & WON == 0) || case.mesh.check().is_ok(), "{}", case.name);
         assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
-        assert_eq!(gpu.fetch(on.claims.view()), vec![NONE; case.mesh.slots()], "{}", case.name);
+        assert_eq!(gpu.fetch(on.state.view()), state_of(&case.scratch, 0), "{}", case.name);
+        assert!(case.scratch.claims.iter().all(|&claim| claim == NONE), "{}", case.name);
         let count = gpu.fetch(on.list_count.view())[0] as usize;
         assert_eq!(on.sorted(&mut gpu, &on.out, 0, count), sorted(expected), "{}", case.name);
         assert_eq!([on.word(&mut gpu, 0), on.word(&mut gpu, ROUND)], [0, case.scratch.round]);
@@ -318,17 +293,14 @@ fn advance_edges() {
         let count = illegal.len() as u32;
         let parity = turn as u32 % 2;
         let words = [(4 * parity as usize, count), (TAKEN, count), (ROUND_NOW, case.scratch.round)];
-        let on = Uploaded::new(&mut gpu, case, &illegal, &words);
+        let on = Uploaded::new(&mut gpu, case, parity as usize, &illegal, &words);
         let arguments = AdvanceEdgesArgs {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
             positions: on.mesh.positions().cast(),
-            claims: on.claims.view(),
-            next_claims: on.next_claims.view(),
-            stamps: on.stamps.view(),
+            state: on.state.view(),
             illegal: on.list.view(),
             next_illegal: on.out.view(),
-            deferred: on.deferred.view(),
             also: Some(on.also.view()),
             also_count: Some(on.also_count.view()),
             words: on.words.view(),
@@ -337,13 +309,11 @@ fn advance_edges() {
             scope: u32::from(hull_alone),
             parity,
         };
-        run::<AdvanceEdges>(&mut gpu, &[("ARITHMETIC", 0)], 2, &arguments);
-        on.test_deferred(&mut gpu, &on.next_claims, &on.out, 1 - parity);
+        run::<AdvanceEdges>(&mut gpu, EXACT, 2, &arguments);
         let (handed, next, tests) =
             kernels::advance_edges(&mut case.mesh, &case.positions, &illegal, hull_alone, &mut case.scratch);
         assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
-        assert_eq!(gpu.fetch(on.claims.view()), vec![NONE; case.mesh.slots()], "{}", case.name);
-        assert_eq!(gpu.fetch(on.next_claims.view()), case.scratch.claims, "{}", case.name);
+        assert_eq!(gpu.fetch(on.state.view()), state_of(&case.scratch, 1 - parity as usize), "{}", case.name);
         assert_eq!(on.sorted(&mut gpu, &on.out, 0, next.len()), sorted(next.clone()), "{}", case.name);
         assert_eq!(on.sorted(&mut gpu, &on.also, 2, handed.len()), sorted(handed.clone()), "{}", case.name);
         assert_eq!(gpu.fetch(on.also_count.view()), [2 + handed.len() as u32]);
@@ -360,16 +330,14 @@ fn flip_tail() {
         let (mut illegal, _) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, false, &mut case.scratch);
         for (turn, [least, most]) in [[usize::MAX, 3], [20, 100], [usize::MAX, 0], [9, 2]].into_iter().enumerate() {
             let parity = turn % 2;
-            let on = Uploaded::new(&mut gpu, case, &illegal, &[(4 * parity, illegal.len() as u32), (PENDING, 99)]);
-            let claims = [[&on.claims, &on.next_claims], [&on.next_claims, &on.claims]][parity];
+            let words = [(4 * parity, illegal.len() as u32), (PENDING, 99)];
+            let on = Uploaded::new(&mut gpu, case, parity, &illegal, &words);
             let lists = [[&on.list, &on.out], [&on.out, &on.list]][parity];
             let arguments = FlipTailArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
-                claims_0: claims[0].view(),
-                claims_1: claims[1].view(),
-                stamps: on.stamps.view(),
+                state: on.state.view(),
                 illegal_0: lists[0].view(),
                 illegal_1: lists[1].view(),
                 also: None,
@@ -382,7 +350,7 @@ fn flip_tail() {
                 most: most as u32,
                 most_tests: u32::MAX,
             };
-            run::<FlipTail>(&mut gpu, &[("ARITHMETIC", 1)], 1, &arguments);
+            run::<FlipTail>(&mut gpu, EXACT, 1, &arguments);
             let limits = [least, most];
             let (left, report) =
                 kernels::flip_tail(&mut case.mesh, &case.positions, &illegal, false, limits, &mut case.scratch);
@@ -390,15 +358,13 @@ fn flip_tail() {
             assert_eq!(on.report(&mut gpu), [report.rounds, report.flips, report.tests], "{}", case.name);
             assert_eq!(on.word(&mut gpu, ROUND), case.scratch.round, "{}", case.name);
             assert_eq!(on.word(&mut gpu, PENDING), left.len() as u32, "{}", case.name);
-            assert_eq!(gpu.fetch(on.stamps.view()), case.scratch.stamps, "{}", case.name);
             let ended = (parity + report.rounds as usize) % 2;
             if !left.is_empty() {
                 assert_eq!(on.word(&mut gpu, 4 * ended), left.len() as u32, "{}", case.name);
                 assert_eq!(on.sorted(&mut gpu, lists[ended], 0, left.len()), sorted(left.clone()), "{}", case.name);
             }
             assert_eq!(on.word(&mut gpu, 4 * (1 - ended)), 0, "{}", case.name);
-            assert_eq!(gpu.fetch(claims[ended].view()), case.scratch.claims, "{}", case.name);
-            assert!(gpu.fetch(claims[1 - ended].view()).iter().all(|&claim| claim == NONE), "{}", case.name);
+            assert_eq!(gpu.fetch(on.state.view()), state_of(&case.scratch, ended), "{}", case.name);
             illegal = left;
         }
     }

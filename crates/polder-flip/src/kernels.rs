@@ -4,7 +4,7 @@ use polder_vulkan::{Access, BufferArgument, Code, Constant, Encoder, Shader, Sid
 
 /// The end of a round and the beginning of the next in one: renews the links around all flips, gives claimed triangles back,
 /// and tests the edges that are handed on, which claim their triangles for the next round. An illegal edge next to no flip
-/// is known to be illegal. What the filter leaves open is deferred to `test_edges` with exact arithmetic.
+/// is known to be illegal.
 #[derive(Debug, Clone, Copy)]
 pub enum AdvanceEdges {}
 
@@ -17,18 +17,12 @@ pub struct AdvanceEdgesArgs<'a> {
     pub links: View<'a, u32>,
     /// read
     pub positions: View<'a, [u32; 4]>,
-    /// written
-    pub claims: View<'a, u32>,
     /// read and written
-    pub next_claims: View<'a, u32>,
-    /// read
-    pub stamps: View<'a, u32>,
+    pub state: View<'a, u32>,
     /// read
     pub illegal: View<'a, u32>,
     /// written
     pub next_illegal: View<'a, u32>,
-    /// written
-    pub deferred: View<'a, u32>,
     /// written, may be left out
     pub also: Option<View<'a, u32>>,
     /// read and written, may be left out
@@ -52,21 +46,18 @@ impl Shader for AdvanceEdges {
         name: "advance_edges",
         words: include_spirv!("../spv/advance_edges.spv"),
         without_float64: Some(include_spirv!("../spv/advance_edges.integers.spv")),
-        argument_bytes: 116,
+        argument_bytes: 92,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
             BufferArgument { name: "positions", offset: 16, access: Access::Read },
-            BufferArgument { name: "claims", offset: 24, access: Access::Write },
-            BufferArgument { name: "next_claims", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "stamps", offset: 40, access: Access::Read },
-            BufferArgument { name: "illegal", offset: 48, access: Access::Read },
-            BufferArgument { name: "next_illegal", offset: 56, access: Access::Write },
-            BufferArgument { name: "deferred", offset: 64, access: Access::Write },
-            BufferArgument { name: "also", offset: 72, access: Access::Write },
-            BufferArgument { name: "also_count", offset: 80, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 88, access: Access::ReadWrite },
-            BufferArgument { name: "report", offset: 96, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "illegal", offset: 32, access: Access::Read },
+            BufferArgument { name: "next_illegal", offset: 40, access: Access::Write },
+            BufferArgument { name: "also", offset: 48, access: Access::Write },
+            BufferArgument { name: "also_count", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 72, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -81,7 +72,7 @@ impl Shader for AdvanceEdges {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "3fbdf7f6142d94a6da72f8d2036ffe65b37e56dfbda81bdb57088bf7066babbc",
+        source_hash: "c9e6f0e13992d45e89ccac3eaa6234bdf96a8418887d9a13810a62b049462d86",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -89,19 +80,16 @@ impl Shader for AdvanceEdges {
         encoder.buffer(0, args.triangles);
         encoder.buffer(8, args.links);
         encoder.buffer(16, args.positions);
-        encoder.buffer(24, args.claims);
-        encoder.buffer(32, args.next_claims);
-        encoder.buffer(40, args.stamps);
-        encoder.buffer(48, args.illegal);
-        encoder.buffer(56, args.next_illegal);
-        encoder.buffer(64, args.deferred);
-        encoder.optional(72, args.also);
-        encoder.optional(80, args.also_count);
-        encoder.buffer(88, args.words);
-        encoder.buffer(96, args.report);
-        encoder.value(104, args.also_limit);
-        encoder.value(108, args.scope);
-        encoder.value(112, args.parity);
+        encoder.buffer(24, args.state);
+        encoder.buffer(32, args.illegal);
+        encoder.buffer(40, args.next_illegal);
+        encoder.optional(48, args.also);
+        encoder.optional(56, args.also_count);
+        encoder.buffer(64, args.words);
+        encoder.buffer(72, args.report);
+        encoder.value(80, args.also_limit);
+        encoder.value(84, args.scope);
+        encoder.value(88, args.parity);
     }
 }
 
@@ -117,10 +105,8 @@ pub struct FlipEdgesArgs<'a> {
     pub triangles: View<'a, u32>,
     /// read and written
     pub links: View<'a, u32>,
-    /// read
-    pub claims: View<'a, u32>,
     /// read and written
-    pub stamps: View<'a, u32>,
+    pub state: View<'a, u32>,
     /// read and written
     pub illegal: View<'a, u32>,
     /// read, may be left out
@@ -148,40 +134,38 @@ impl Shader for FlipEdges {
         name: "flip_edges",
         words: include_spirv!("../spv/flip_edges.spv"),
         without_float64: None,
-        argument_bytes: 92,
+        argument_bytes: 84,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
-            BufferArgument { name: "claims", offset: 16, access: Access::Read },
-            BufferArgument { name: "stamps", offset: 24, access: Access::ReadWrite },
-            BufferArgument { name: "illegal", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "edges", offset: 40, access: Access::Read },
-            BufferArgument { name: "edge_count", offset: 48, access: Access::ReadWrite },
-            BufferArgument { name: "listed", offset: 56, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 64, access: Access::ReadWrite },
-            BufferArgument { name: "report", offset: 72, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "illegal", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "edges", offset: 32, access: Access::Read },
+            BufferArgument { name: "edge_count", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "listed", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 64, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "2a1fb41a640015dc3485746464efb4cd64f4629ed705cd51b3c642cbc3b3fb61",
+        source_hash: "ce08d3b6573d50a44b7bba40f3b2fc90b98ef512675c8faaf3237debba7042f1",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
         encoder.buffer(0, args.triangles);
         encoder.buffer(8, args.links);
-        encoder.buffer(16, args.claims);
-        encoder.buffer(24, args.stamps);
-        encoder.buffer(32, args.illegal);
-        encoder.optional(40, args.edges);
-        encoder.optional(48, args.edge_count);
-        encoder.optional(56, args.listed);
-        encoder.buffer(64, args.words);
-        encoder.buffer(72, args.report);
-        encoder.value(80, args.limit);
-        encoder.value(84, args.least);
-        encoder.value(88, args.parity);
+        encoder.buffer(16, args.state);
+        encoder.buffer(24, args.illegal);
+        encoder.optional(32, args.edges);
+        encoder.optional(40, args.edge_count);
+        encoder.optional(48, args.listed);
+        encoder.buffer(56, args.words);
+        encoder.buffer(64, args.report);
+        encoder.value(72, args.limit);
+        encoder.value(76, args.least);
+        encoder.value(80, args.parity);
     }
 }
 
@@ -201,11 +185,7 @@ pub struct FlipTailArgs<'a> {
     /// read
     pub positions: View<'a, [u32; 4]>,
     /// read and written
-    pub claims_0: View<'a, u32>,
-    /// read and written
-    pub claims_1: View<'a, u32>,
-    /// read and written
-    pub stamps: View<'a, u32>,
+    pub state: View<'a, u32>,
     /// read and written
     pub illegal_0: View<'a, u32>,
     /// read and written
@@ -237,20 +217,18 @@ impl Shader for FlipTail {
         name: "flip_tail",
         words: include_spirv!("../spv/flip_tail.spv"),
         without_float64: Some(include_spirv!("../spv/flip_tail.integers.spv")),
-        argument_bytes: 116,
+        argument_bytes: 100,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
             BufferArgument { name: "positions", offset: 16, access: Access::Read },
-            BufferArgument { name: "claims_0", offset: 24, access: Access::ReadWrite },
-            BufferArgument { name: "claims_1", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "stamps", offset: 40, access: Access::ReadWrite },
-            BufferArgument { name: "illegal_0", offset: 48, access: Access::ReadWrite },
-            BufferArgument { name: "illegal_1", offset: 56, access: Access::ReadWrite },
-            BufferArgument { name: "also", offset: 64, access: Access::Write },
-            BufferArgument { name: "also_count", offset: 72, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 80, access: Access::ReadWrite },
-            BufferArgument { name: "report", offset: 88, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "illegal_0", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "illegal_1", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "also", offset: 48, access: Access::Write },
+            BufferArgument { name: "also_count", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 72, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -258,7 +236,7 @@ impl Shader for FlipTail {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "ee64e3fdcb2ee02b334c68286781c82ccc9254875361055a2d357be8f790bfe5",
+        source_hash: "ef7b145a95ca48e04a6c2703eb36792435d7d1384f43f5ff097c3e36ef7e9d0d",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -266,20 +244,18 @@ impl Shader for FlipTail {
         encoder.buffer(0, args.triangles);
         encoder.buffer(8, args.links);
         encoder.buffer(16, args.positions);
-        encoder.buffer(24, args.claims_0);
-        encoder.buffer(32, args.claims_1);
-        encoder.buffer(40, args.stamps);
-        encoder.buffer(48, args.illegal_0);
-        encoder.buffer(56, args.illegal_1);
-        encoder.optional(64, args.also);
-        encoder.optional(72, args.also_count);
-        encoder.buffer(80, args.words);
-        encoder.buffer(88, args.report);
-        encoder.value(96, args.also_limit);
-        encoder.value(100, args.scope);
-        encoder.value(104, args.least);
-        encoder.value(108, args.most);
-        encoder.value(112, args.most_tests);
+        encoder.buffer(24, args.state);
+        encoder.buffer(32, args.illegal_0);
+        encoder.buffer(40, args.illegal_1);
+        encoder.optional(48, args.also);
+        encoder.optional(56, args.also_count);
+        encoder.buffer(64, args.words);
+        encoder.buffer(72, args.report);
+        encoder.value(80, args.also_limit);
+        encoder.value(84, args.scope);
+        encoder.value(88, args.least);
+        encoder.value(92, args.most);
+        encoder.value(96, args.most_tests);
     }
 }
 
@@ -391,9 +367,7 @@ pub struct RelinkEdgesArgs<'a> {
     /// read and written
     pub links: View<'a, u32>,
     /// read and written
-    pub claims: View<'a, u32>,
-    /// read
-    pub stamps: View<'a, u32>,
+    pub state: View<'a, u32>,
     /// read
     pub illegal: View<'a, u32>,
     /// written
@@ -415,38 +389,36 @@ impl Shader for RelinkEdges {
         name: "relink_edges",
         words: include_spirv!("../spv/relink_edges.spv"),
         without_float64: None,
-        argument_bytes: 64,
+        argument_bytes: 56,
         buffers: &[
             BufferArgument { name: "links", offset: 0, access: Access::ReadWrite },
-            BufferArgument { name: "claims", offset: 8, access: Access::ReadWrite },
-            BufferArgument { name: "stamps", offset: 16, access: Access::Read },
-            BufferArgument { name: "illegal", offset: 24, access: Access::Read },
-            BufferArgument { name: "edges", offset: 32, access: Access::Write },
-            BufferArgument { name: "edge_count", offset: 40, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "illegal", offset: 16, access: Access::Read },
+            BufferArgument { name: "edges", offset: 24, access: Access::Write },
+            BufferArgument { name: "edge_count", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "f8faa55d09e6275f5d84c8f00bca6aa7542fdb2bab9dcafa6b686f6eca31a7c9",
+        source_hash: "ee23d3ef1841b5a45b3ac483dffe32c45f5616ab95acd7b47f5444fba8b4481e",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
         encoder.buffer(0, args.links);
-        encoder.buffer(8, args.claims);
-        encoder.buffer(16, args.stamps);
-        encoder.buffer(24, args.illegal);
-        encoder.buffer(32, args.edges);
-        encoder.buffer(40, args.edge_count);
-        encoder.buffer(48, args.words);
-        encoder.value(56, args.limit);
-        encoder.value(60, args.parity);
+        encoder.buffer(8, args.state);
+        encoder.buffer(16, args.illegal);
+        encoder.buffer(24, args.edges);
+        encoder.buffer(32, args.edge_count);
+        encoder.buffer(40, args.words);
+        encoder.value(48, args.limit);
+        encoder.value(52, args.parity);
     }
 }
 
 /// Steps 1 and 2 of a round over a list, in which edges may repeat: each is tested once, and illegal ones claim their two
-/// triangles. What the filter leaves open is deferred to the same kernel with exact arithmetic, which runs over it next.
+/// triangles.
 #[derive(Debug, Clone, Copy)]
 pub enum TestEdges {}
 
@@ -461,16 +433,14 @@ pub struct TestEdgesArgs<'a> {
     pub positions: View<'a, [u32; 4]>,
     /// read and written
     pub edges: View<'a, u32>,
-    /// read, may be left out
-    pub edge_count: Option<View<'a, u32>>,
-    /// read and written, may be left out
-    pub listed: Option<View<'a, u32>>,
+    /// read
+    pub edge_count: View<'a, u32>,
     /// read and written
-    pub claims: View<'a, u32>,
+    pub listed: View<'a, u32>,
+    /// read and written
+    pub state: View<'a, u32>,
     /// written
     pub illegal: View<'a, u32>,
-    /// written
-    pub deferred: View<'a, u32>,
     /// read and written
     pub words: View<'a, u32>,
     /// read and written
@@ -490,7 +460,7 @@ impl Shader for TestEdges {
         name: "test_edges",
         words: include_spirv!("../spv/test_edges.spv"),
         without_float64: Some(include_spirv!("../spv/test_edges.integers.spv")),
-        argument_bytes: 100,
+        argument_bytes: 92,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -498,11 +468,10 @@ impl Shader for TestEdges {
             BufferArgument { name: "edges", offset: 24, access: Access::ReadWrite },
             BufferArgument { name: "edge_count", offset: 32, access: Access::Read },
             BufferArgument { name: "listed", offset: 40, access: Access::ReadWrite },
-            BufferArgument { name: "claims", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 48, access: Access::ReadWrite },
             BufferArgument { name: "illegal", offset: 56, access: Access::Write },
-            BufferArgument { name: "deferred", offset: 64, access: Access::Write },
-            BufferArgument { name: "words", offset: 72, access: Access::ReadWrite },
-            BufferArgument { name: "report", offset: 80, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 72, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -517,7 +486,7 @@ impl Shader for TestEdges {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "2681c06e84bd7e204a64c369ddefe6c9fec4f4909544c34432d4a26b43cffd36",
+        source_hash: "ea556e01b023b7726d37ae1c6aace43eb71a48e52804092ccb59512897e4c30a",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -526,21 +495,20 @@ impl Shader for TestEdges {
         encoder.buffer(8, args.links);
         encoder.buffer(16, args.positions);
         encoder.buffer(24, args.edges);
-        encoder.optional(32, args.edge_count);
-        encoder.optional(40, args.listed);
-        encoder.buffer(48, args.claims);
+        encoder.buffer(32, args.edge_count);
+        encoder.buffer(40, args.listed);
+        encoder.buffer(48, args.state);
         encoder.buffer(56, args.illegal);
-        encoder.buffer(64, args.deferred);
-        encoder.buffer(72, args.words);
-        encoder.buffer(80, args.report);
-        encoder.value(88, args.limit);
-        encoder.value(92, args.scope);
-        encoder.value(96, args.parity);
+        encoder.buffer(64, args.words);
+        encoder.buffer(72, args.report);
+        encoder.value(80, args.limit);
+        encoder.value(84, args.scope);
+        encoder.value(88, args.parity);
     }
 }
 
-/// Steps 1 and 2 of the first round: each edge of the mesh is tested, one triangle an invocation, and illegal ones claim
-/// their two triangles. What the filter leaves open is deferred to `test_edges` with exact arithmetic.
+/// Steps 1 and 2 of the first round: each edge of the mesh is tested, and illegal ones claim their two triangles. A workgroup
+/// reads some triangles, gathers the edges of which they are the lower side, and tests those densely.
 #[derive(Debug, Clone, Copy)]
 pub enum TestMesh {}
 
@@ -554,11 +522,9 @@ pub struct TestMeshArgs<'a> {
     /// read
     pub positions: View<'a, [u32; 4]>,
     /// read and written
-    pub claims: View<'a, u32>,
+    pub state: View<'a, u32>,
     /// written
     pub illegal: View<'a, u32>,
-    /// written
-    pub deferred: View<'a, u32>,
     /// read and written
     pub words: View<'a, u32>,
     /// read and written
@@ -578,17 +544,16 @@ impl Shader for TestMesh {
         name: "test_mesh",
         words: include_spirv!("../spv/test_mesh.spv"),
         without_float64: Some(include_spirv!("../spv/test_mesh.integers.spv")),
-        argument_bytes: 80,
+        argument_bytes: 72,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
             BufferArgument { name: "positions", offset: 16, access: Access::Read },
-            BufferArgument { name: "claims", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 24, access: Access::ReadWrite },
             BufferArgument { name: "illegal", offset: 32, access: Access::Write },
-            BufferArgument { name: "deferred", offset: 40, access: Access::Write },
-            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
-            BufferArgument { name: "report", offset: 56, access: Access::ReadWrite },
-            BufferArgument { name: "slots", offset: 64, access: Access::Read },
+            BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "report", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "slots", offset: 56, access: Access::Read },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -603,7 +568,7 @@ impl Shader for TestMesh {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "17455eaeba304173620c03999ce42d51ada6cd6b71201f71d05f019b5a4f2829",
+        source_hash: "1702bda400535e4ec2968c9e7e9aa0d543a829870dce535c0cae31f17f567df0",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -611,13 +576,12 @@ impl Shader for TestMesh {
         encoder.buffer(0, args.triangles);
         encoder.buffer(8, args.links);
         encoder.buffer(16, args.positions);
-        encoder.buffer(24, args.claims);
+        encoder.buffer(24, args.state);
         encoder.buffer(32, args.illegal);
-        encoder.buffer(40, args.deferred);
-        encoder.buffer(48, args.words);
-        encoder.buffer(56, args.report);
-        encoder.buffer(64, args.slots);
-        encoder.value(72, args.scope);
-        encoder.value(76, args.parity);
+        encoder.buffer(40, args.words);
+        encoder.buffer(48, args.report);
+        encoder.buffer(56, args.slots);
+        encoder.value(64, args.scope);
+        encoder.value(68, args.parity);
     }
 }

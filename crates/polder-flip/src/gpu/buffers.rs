@@ -98,21 +98,19 @@ impl TallyRead {
     }
 }
 
-/// Scratch memory of the stage, for one number of slots: 31 bytes a slot.
+/// Scratch memory of the stage, for one number of slots: 24.4 bytes a slot.
 #[derive(Debug)]
 pub struct Buffers {
     pub(super) slots: usize,
-    /// By triangle: the least priority that claims it. Of even and of odd rounds.
-    pub(super) claims: [Buffer<u32>; 2],
-    /// By triangle: the last round that flipped it, and along which edge.
-    pub(super) stamps: Buffer<u32>,
+    /// By triangle: the least priority that claims it, in even and in odd rounds; the last round that flipped it, and along
+    /// which edge.
+    pub(super) state: Buffer<[u32; 3]>,
     /// A bit for each half-edge: whether it was met in this round.
     pub(super) listed: Buffer<u32>,
     /// Illegal edges of even rounds.
     pub(super) illegal: Buffer<u32>,
     /// Those of odd rounds; a list for others, which a round has read before it writes there.
     pub(super) list: EdgeList,
-    pub(super) deferred: Buffer<u32>,
     pub(super) words: Buffer<u32>,
 }
 
@@ -127,13 +125,10 @@ fn listed_of(slots: usize) -> usize {
 
 pub(super) fn estimate(slots: usize) -> Estimate {
     Estimate::new()
-        .buffer::<u32>("claims", slots)
-        .buffer::<u32>("claims", slots)
-        .buffer::<u32>("stamps", slots)
+        .buffer::<[u32; 3]>("state", slots)
         .buffer::<u32>("listed", listed_of(slots))
         .buffer::<u32>("illegal", edges_of(slots))
         .and(EdgeList::estimate(edges_of(slots)))
-        .buffer::<u32>("deferred", edges_of(slots))
         .buffer::<u32>("flip words", STEERING)
 }
 
@@ -143,12 +138,10 @@ impl Buffers {
         let words = |name, len| Buffer::<u32>::new(device, name, len);
         Ok(Self {
             slots,
-            claims: [words("claims", slots)?, words("claims", slots)?],
-            stamps: words("stamps", slots)?,
+            state: Buffer::new(device, "state", slots)?,
             listed: words("listed", listed_of(slots))?,
             illegal: words("illegal", edges_of(slots))?,
             list: EdgeList::new(device, edges_of(slots))?,
-            deferred: words("deferred", edges_of(slots))?,
             words: words("flip words", STEERING)?,
         })
     }

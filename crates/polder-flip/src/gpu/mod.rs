@@ -23,9 +23,8 @@ pub struct Stage {
     device: Device,
     /// Workgroups of wide kernels, which stride over their items.
     groups: [u32; 3],
-    exact_groups: [u32; 3],
     test_mesh: Kernel<TestMesh>,
-    test_edges: Kernels<TestEdges>,
+    test_edges: Kernel<TestEdges>,
     flip_edges: Kernel<FlipEdges>,
     relink_edges: Kernel<RelinkEdges>,
     advance_edges: Kernel<AdvanceEdges>,
@@ -49,17 +48,15 @@ impl Stage {
     /// Those of the device.
     pub fn with_arithmetic(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
         let groups = if device.info().kind == DeviceKind::Cpu { FEW_GROUPS } else { GROUPS };
-        let tail = arithmetic.kernels(device, &[])?;
         Ok(Self {
             device: device.clone(),
             groups: [groups, 1, 1],
-            exact_groups: [groups, 1, 1],
-            test_mesh: arithmetic.kernels(device, &[])?.first,
-            test_edges: arithmetic.kernels(device, &[])?,
+            test_mesh: arithmetic.kernel(device, &[])?,
+            test_edges: arithmetic.kernel(device, &[])?,
             flip_edges: Kernel::new(device, &[])?,
             relink_edges: Kernel::new(device, &[])?,
-            advance_edges: arithmetic.kernels(device, &[])?.first,
-            flip_tail: tail.rest.unwrap_or(tail.first),
+            advance_edges: arithmetic.kernel(device, &[])?,
+            flip_tail: arithmetic.kernel(device, &[])?,
         })
     }
 

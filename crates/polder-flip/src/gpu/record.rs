@@ -8,6 +8,8 @@ use polder_vulkan::{Error, Recording, groups_for};
 const NONE: u32 = u32::MAX;
 /// Invocations of a workgroup, the same in all kernels.
 const WORKGROUP: u32 = 256;
+/// Triangles of an invocation of `test_mesh`.
+const EACH: u32 = 2;
 
 /// Wide rounds between two tails: an even number.
 const WIDE: usize = 6;
@@ -41,15 +43,13 @@ struct Round<'a> {
 impl Stage {
     /// To be recorded once before rounds over these buffers.
     pub fn record_start(&self, recording: &mut Recording, buffers: &Buffers) {
-        recording.fill(buffers.claims[0].view(), NONE);
-        recording.fill(buffers.claims[1].view(), NONE);
-        recording.fill(buffers.stamps.view(), 0);
+        recording.fill(buffers.state.view().cast(), NONE);
         recording.fill(buffers.listed.view(), 0);
         recording.fill(buffers.words.view(), 0);
     }
 
-    /// Flips until no edge is illegal, as [`reference::flip`](crate::reference::flip) does; [`Stage::record_start`] is part
-    /// of it. Adds to the tally.
+    /// Flips until no edge is illegal, as [`reference::flip`](crate::reference::flip) does. Needs no
+    /// [`Stage::record_start`]. Adds to the tally.
     ///
     /// # Errors
     ///
@@ -62,7 +62,8 @@ impl Stage {
         tally: &Tally,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "flip")?;
-        self.record_start(recording, buffers);
+        recording.fill(buffers.state.view().cast(), NONE);
+        recording.fill(buffers.words.view(), 0);
         let round = Round { mesh, buffers, also: None, tally, scope: Scope::All };
         self.test_mesh(recording, round);
         let bound = u32::try_from(round_bound(mesh.capacity())).unwrap_or(u32::MAX);
@@ -95,8 +96,7 @@ impl Stage {
         self.flip(recording, round, Some(list), 0, 0);
         let arguments = RelinkEdgesArgs {
             links: mesh.twins(),
-            claims: buffers.claims[0].view(),
-            stamps: buffers.stamps.view(),
+            state: buffers.state.view().cast(),
             illegal: buffers.illegal(0),
             edges: list.edges(),
             edge_count: list.count(),
@@ -161,58 +161,36 @@ impl Stage {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            claims: buffers.claims[0].view(),
+            state: buffers.state.view().cast(),
             illegal: buffers.illegal(0),
-            deferred: buffers.deferred.view(),
             words: buffers.words.view(),
             report: tally.words(),
             slots: mesh.slots(),
             scope: scope as u32,
             parity: 0,
         };
-        recording.dispatch(&self.test_mesh, groups_for(mesh.capacity(), WORKGROUP), &arguments);
-        self.test_deferred(recording, round, 0);
+        recording.dispatch(&self.test_mesh, groups_for(mesh.capacity(), EACH * WORKGROUP), &arguments);
     }
 
     /// A list, and the claims of a round over it.
     fn test_list(&self, recording: &mut Recording, round: Round<'_>, list: &EdgeList) {
-        let listed = Some(round.buffers.listed.view());
-        let arguments = TestEdgesArgs {
-            edges: list.edges(),
-            edge_count: Some(list.count()),
-            listed,
-            limit: list.limit(),
-            ..self.deferred_arguments(round, 0)
-        };
-        recording.dispatch(&self.test_edges.first, self.groups, &arguments);
-        self.test_deferred(recording, round, 0);
-    }
-
-    /// What the filter left open.
-    fn test_deferred(&self, recording: &mut Recording, round: Round<'_>, parity: usize) {
-        if let Some(exact) = &self.test_edges.rest {
-            recording.dispatch(exact, self.exact_groups, &self.deferred_arguments(round, parity));
-        }
-    }
-
-    fn deferred_arguments<'a>(&self, round: Round<'a>, parity: usize) -> TestEdgesArgs<'a> {
         let Round { mesh, buffers, tally, scope, .. } = round;
-        TestEdgesArgs {
+        let arguments = TestEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            edges: buffers.deferred.view(),
-            edge_count: None,
-            listed: None,
-            claims: buffers.claims[parity].view(),
-            illegal: buffers.illegal(parity),
-            deferred: buffers.deferred.view(),
+            edges: list.edges(),
+            edge_count: list.count(),
+            listed: buffers.listed.view(),
+            state: buffers.state.view().cast(),
+            illegal: buffers.illegal(0),
             words: buffers.words.view(),
             report: tally.words(),
-            limit: buffers.deferred.len() as u32,
+            limit: list.limit(),
             scope: scope as u32,
-            parity: parity as u32,
-        }
+            parity: 0,
+        };
+        recording.dispatch(&self.test_edges, self.groups, &arguments);
     }
 
     fn flip(&self, recording: &mut Recording, round: Round<'_>, list: Option<&EdgeList>, parity: usize, least: u32) {
@@ -220,8 +198,7 @@ impl Stage {
         let arguments = FlipEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
-            claims: buffers.claims[parity].view(),
-            stamps: buffers.stamps.view(),
+            state: buffers.state.view().cast(),
             illegal: buffers.illegal(parity),
             edges: list.map(EdgeList::edges),
             edge_count: list.map(EdgeList::count),
@@ -241,12 +218,9 @@ impl Stage {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            claims: buffers.claims[parity].view(),
-            next_claims: buffers.claims[1 - parity].view(),
-            stamps: buffers.stamps.view(),
+            state: buffers.state.view().cast(),
             illegal: buffers.illegal(parity),
             next_illegal: buffers.illegal(1 - parity),
-            deferred: buffers.deferred.view(),
             also: also.map(EdgeList::edges),
             also_count: also.map(EdgeList::count),
             words: buffers.words.view(),
@@ -256,7 +230,6 @@ impl Stage {
             parity: parity as u32,
         };
         recording.dispatch(&self.advance_edges, self.groups, &arguments);
-        self.test_deferred(recording, round, 1 - parity);
     }
 
     fn tail(&self, recording: &mut Recording, round: Round<'_>, least: u32) {
@@ -265,9 +238,7 @@ impl Stage {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            claims_0: buffers.claims[0].view(),
-            claims_1: buffers.claims[1].view(),
-            stamps: buffers.stamps.view(),
+            state: buffers.state.view().cast(),
             illegal_0: buffers.illegal(0),
             illegal_1: buffers.illegal(1),
             also: also.map(EdgeList::edges),

@@ -22,7 +22,7 @@ pub struct Scratch {
 impl Scratch {
     /// For so many slots, before the first round.
     pub fn new(slots: usize) -> Self {
-        Self { claims: vec![NONE; slots], stamps: vec![0; slots], round: 0 }
+        Self { claims: vec![NONE; slots], stamps: vec![NONE; slots], round: 0 }
     }
 
     /// Along which half-edge a triangle was flipped in this round.
