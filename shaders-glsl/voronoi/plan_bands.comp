@@ -10,7 +10,8 @@ layout(push_constant, std430) uniform Args {
     uint column_groups; // of column_ends
     uint fill_groups;   // of column_fill
     uint stack_groups;  // of row_stacks
-    uint merge_groups;  // of row_merge
+    uint merge_groups;  // of row_merge, groups of bands
+    uint row_groups;    // of row_merge, whole rows
 };
 
 void plan(uint place, uint wanted) {
@@ -30,5 +31,6 @@ void main() {
     plan(1u, any_left ? fill_groups : 0u);
     plan(2u, any_left ? stack_groups : 0u);
     plan(3u, any_left ? merge_groups : 0u);
-    plan(4u, tiles); // a workgroup each in color_pixels and mark_debris
+    plan(4u, any_left ? row_groups : 0u);
+    plan(5u, tiles); // a workgroup each in color_pixels and mark_debris
 }

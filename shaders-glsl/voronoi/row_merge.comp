@@ -1,6 +1,7 @@
-// Coloring, 6 of 8: merges the stacks of each row from left to right, in place: entries at the end of the left ones and at
-// the beginning of each next one win nothing any more. `starts` gets the first pixel of each band's stack; an empty one has
-// that of the next.
+// Coloring, 6 of 8: merges stacks of each row from left to right, in place: entries at the end of the left ones and at the
+// beginning of each next one win nothing any more. An invocation merges `group` bands of a row, which have been merged by
+// `unit` before. When that is the whole row, `starts` gets the first pixel of each band's stack; an empty one has that of the
+// next. Else it gets, at the first band of a group, the last band of it whose stack is not empty.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "row.glsl"
@@ -10,11 +11,15 @@ layout(push_constant, std430) uniform Args {
     ReadU32 wanted;
     U32 entries;
     U32 live;
-    WriteU32 starts;
+    U32 starts;
     uint width;
     uint height;
-    uint band; // columns
+    uint band;  // columns
+    uint unit;  // bands
+    uint group; // bands
 };
+
+const uint NO_BAND = 0xffffu;
 
 ivec2 site_of(uint entry, uint y) {
     uint column = entry & 0xffffu;
@@ -22,70 +27,118 @@ ivec2 site_of(uint entry, uint y) {
 }
 
 void main() {
-    uint y = item_index();
+    uint bands = (width + band - 1u) / band;
+    uint groups = (bands + group - 1u) / group;
+    uint y = item_index() / groups;
     if (y >= height || !wanted_rows(wanted, y, y + 1u)) {
         return;
     }
-    uint bands = (width + band - 1u) / band;
+    uint begin = item_index() % groups * group;
+    uint end_band = min(begin + group, bands);
     uint stacks = y * bands;
     uint row = y * width;
-    // The band of the top of all that is merged, the range of its stack, and the band of the stack before.
-    uint last = 0xffffu;
+    // The band of the top of all that is merged, the range of its stack, and the band of the stack before; the top itself.
+    uint last = NO_BAND;
     uint low = 0u;
     uint high = 0u;
-    uint previous = 0xffffu;
-    for (uint b = 0u; b < bands; b++) {
-        uint start = row + b * band;
-        uint end = live.at[stacks + b] >> 8 & 0xffu;
-        uint first = 0u;
+    uint previous = NO_BAND;
+    ivec2 top = ivec2(0);
+    uint top_from = 0u;
+    for (uint b0 = begin; b0 < end_band; b0 += unit) {
+        uint unit_last = unit == 1u ? b0 : starts.at[stacks + b0];
+        uint b = b0;
+        uint word = unit_last == NO_BAND ? 0u : live.at[stacks + b];
+        uint first = word & 0xffu;
+        uint end = word >> 8 & 0xffu;
         uint wins_from = 0u;
-        while (first < end && last != 0xffffu) {
-            uint entry = entries.at[start + first];
-            uint top = entries.at[row + last * band + high - 1u];
-            wins_from = takes_over(site_of(top, y), site_of(entry, y));
-            if (wins_from <= top >> 16) {
-                // The top wins nothing.
-                wins_from = 0u;
-                high--;
-                if (high == low) {
-                    live.at[stacks + last] = 0u;
-                    last = previous;
-                    if (last != 0xffffu) {
-                        uint word = live.at[stacks + last];
-                        low = word & 0xffu;
-                        high = word >> 8 & 0xffu;
-                        previous = word >> 16;
-                    }
+        bool survives = false;
+        while (unit_last != NO_BAND && !survives) {
+            if (first == end) {
+                live.at[stacks + b] = 0u;
+                if (b == unit_last) {
+                    break;
                 }
+                b++;
+                word = live.at[stacks + b];
+                first = word & 0xffu;
+                end = word >> 8 & 0xffu;
                 continue;
             }
-            uint next = first + 1u < end ? entries.at[start + first + 1u] >> 16 : width;
-            if (wins_from < next) {
-                break;
+            uint start = row + b * band;
+            uint entry = entries.at[start + first];
+            wins_from = 0u;
+            if (last == NO_BAND) {
+                // Nothing is left before it, so that all pixels up to the next one are its own.
+                survives = true;
+            } else {
+                wins_from = takes_over(top, site_of(entry, y));
+                if (wins_from <= top_from) {
+                    // The top wins nothing.
+                    high--;
+                    if (high == low) {
+                        live.at[stacks + last] = 0u;
+                        last = previous;
+                        if (last != NO_BAND) {
+                            uint there = live.at[stacks + last];
+                            low = there & 0xffu;
+                            high = there >> 8 & 0xffu;
+                            previous = there >> 16;
+                        }
+                    }
+                    if (last != NO_BAND) {
+                        uint new_top = entries.at[row + last * band + high - 1u];
+                        top = site_of(new_top, y);
+                        top_from = new_top >> 16;
+                    }
+                    continue;
+                }
+                uint next = width;
+                if (first + 1u < end) {
+                    next = entries.at[start + first + 1u] >> 16;
+                } else {
+                    for (uint c = b + 1u; c <= unit_last && next == width; c++) {
+                        uint there = live.at[stacks + c];
+                        if ((there & 0xffu) < (there >> 8 & 0xffu)) {
+                            next = entries.at[row + c * band + (there & 0xffu)] >> 16;
+                        }
+                    }
+                }
+                // One that wins nothing leaves what is left to it to the next one, or that lies beyond the row.
+                survives = wins_from < next;
+                first += survives ? 0u : 1u;
             }
-            // The newcomer wins nothing: what is left to it belongs to the next one, or lies beyond the row.
-            first++;
+            if (survives) {
+                entries.at[start + first] = wins_from << 16 | (entry & 0xffffu);
+            }
         }
-        if (first == end) {
-            live.at[stacks + b] = 0u;
+        if (!survives) {
             continue;
         }
-        uint entry = entries.at[start + first];
-        if (last == 0xffffu) {
-            // Nothing is left before it, so that all pixels up to the next one are its own.
-            wins_from = 0u;
-        } else {
+        if (last != NO_BAND) {
             live.at[stacks + last] = previous << 16 | high << 8 | low;
         }
-        entries.at[start + first] = wins_from << 16 | (entry & 0xffffu);
-        live.at[stacks + b] = last << 16 | end << 8 | first;
         previous = last;
-        last = b;
+        if (b != unit_last) {
+            // The others behind it stay as they are.
+            live.at[stacks + b] = last << 16 | end << 8 | first;
+            word = live.at[stacks + unit_last];
+            first = word & 0xffu;
+            end = word >> 8 & 0xffu;
+            previous = word >> 16;
+        }
+        last = unit_last;
         low = first;
         high = end;
+        uint new_top = entries.at[row + last * band + high - 1u];
+        top = site_of(new_top, y);
+        top_from = new_top >> 16;
     }
-    if (last != 0xffffu) {
+    if (last != NO_BAND) {
         live.at[stacks + last] = previous << 16 | high << 8 | low;
+    }
+    if (group < bands) {
+        starts.at[stacks + begin] = last;
+        return;
     }
     uint begins = width;
     for (uint b = bands; b > 0u;) {

@@ -808,6 +808,8 @@ pub struct PlanBandsArgs<'a> {
     pub stack_groups: u32,
     /// a value
     pub merge_groups: u32,
+    /// a value
+    pub row_groups: u32,
 }
 
 impl Shader for PlanBands {
@@ -817,7 +819,7 @@ impl Shader for PlanBands {
         name: "plan_bands",
         words: include_spirv!("../spv/plan_bands.spv"),
         without_float64: None,
-        argument_bytes: 32,
+        argument_bytes: 36,
         buffers: &[
             BufferArgument { name: "left_count", offset: 0, access: Access::Read },
             BufferArgument { name: "groups", offset: 8, access: Access::Write },
@@ -825,7 +827,7 @@ impl Shader for PlanBands {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "d8d7487864e364b59815294320e363b7e69608f75579fe7d2a1ecc0092d530cd",
+        source_hash: "294f3ec7d783dbb826e7f720c94e8358817e7b0694a4c2d867b94d3dd106350e",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -836,6 +838,7 @@ impl Shader for PlanBands {
         encoder.value(20, args.fill_groups);
         encoder.value(24, args.stack_groups);
         encoder.value(28, args.merge_groups);
+        encoder.value(32, args.row_groups);
     }
 }
 
@@ -1008,9 +1011,10 @@ impl Shader for Repair {
     }
 }
 
-/// Coloring, 6 of 8: merges the stacks of each row from left to right, in place: entries at the end of the left ones and at
-/// the beginning of each next one win nothing any more. `starts` gets the first pixel of each band's stack; an empty one has
-/// that of the next.
+/// Coloring, 6 of 8: merges stacks of each row from left to right, in place: entries at the end of the left ones and at the
+/// beginning of each next one win nothing any more. An invocation merges `group` bands of a row, which have been merged by
+/// `unit` before. When that is the whole row, `starts` gets the first pixel of each band's stack; an empty one has that of the
+/// next. Else it gets, at the first band of a group, the last band of it whose stack is not empty.
 #[derive(Debug, Clone, Copy)]
 pub enum RowMerge {}
 
@@ -1025,7 +1029,7 @@ pub struct RowMergeArgs<'a> {
     pub entries: View<'a, u32>,
     /// read and written
     pub live: View<'a, u32>,
-    /// written
+    /// read and written
     pub starts: View<'a, u32>,
     /// a value
     pub width: u32,
@@ -1033,6 +1037,10 @@ pub struct RowMergeArgs<'a> {
     pub height: u32,
     /// a value
     pub band: u32,
+    /// a value
+    pub unit: u32,
+    /// a value
+    pub group: u32,
 }
 
 impl Shader for RowMerge {
@@ -1042,18 +1050,18 @@ impl Shader for RowMerge {
         name: "row_merge",
         words: include_spirv!("../spv/row_merge.spv"),
         without_float64: None,
-        argument_bytes: 52,
+        argument_bytes: 60,
         buffers: &[
             BufferArgument { name: "nearest", offset: 0, access: Access::Read },
             BufferArgument { name: "wanted", offset: 8, access: Access::Read },
             BufferArgument { name: "entries", offset: 16, access: Access::ReadWrite },
             BufferArgument { name: "live", offset: 24, access: Access::ReadWrite },
-            BufferArgument { name: "starts", offset: 32, access: Access::Write },
+            BufferArgument { name: "starts", offset: 32, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "1826f1ec2217ffd451928e7e29ad7856fd5d65fb172d72c096ecb4f297e73a73",
+        source_hash: "e79e8036e2243b856b5b2cc861bd02e32cf04385b4340596a8853b08afb7d55c",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1066,6 +1074,8 @@ impl Shader for RowMerge {
         encoder.value(40, args.width);
         encoder.value(44, args.height);
         encoder.value(48, args.band);
+        encoder.value(52, args.unit);
+        encoder.value(56, args.group);
     }
 }
 

@@ -89,8 +89,8 @@ fn color_tiles() {
 fn plan_bands() {
     with_device(|Shared { gpu, .. }| {
         for left in [0, 1, 65535, 65536, 1 << 20] {
-            let wanted = [1, 65535, 65536, 200_000];
-            let (left_count, groups) = (gpu.buffer(&[left]), gpu.buffer(&[7_u32; 20]));
+            let wanted = [1, 65535, 65536, 200_000, 3];
+            let (left_count, groups) = (gpu.buffer(&[left]), gpu.buffer(&[7_u32; 24]));
             let arguments = PlanBandsArgs {
                 left_count: left_count.view(),
                 groups: groups.view(),
@@ -98,6 +98,7 @@ fn plan_bands() {
                 fill_groups: wanted[1],
                 stack_groups: wanted[2],
                 merge_groups: wanted[3],
+                row_groups: wanted[4],
             };
             run::<PlanBands>(gpu, 1, &arguments);
             let found: Vec<[u32; 3]> =
@@ -192,35 +193,49 @@ fn row_merge() {
         for (turn, (name, sites)) in grids().into_iter().enumerate() {
             let ([width, height], band) = (sites.size, SHORT.columns);
             let near = kernels::column_fill(&ranked(&sites).0, sites.size);
-            let (mut stacks, mut words) = kernels::row_stacks(&near, sites.size, band);
-            let [nearest, entries, live] = buffers(gpu, [&halves(&near, width), &stacks, &words]);
-            let (starts, wanted_rows) = (gpu.buffer(&vec![7_u32; words.len()]), wanted_of(turn, sites.size));
+            let wanted_rows = wanted_of(turn, sites.size);
             let wanted = gpu.buffer(&wanted_rows);
-            let arguments = RowMergeArgs {
-                nearest: nearest.view(),
-                wanted: wanted.view(),
-                entries: entries.view(),
-                live: live.view(),
-                starts: starts.view(),
-                width,
-                height,
-                band,
-            };
-            run::<RowMerge>(gpu, height as usize, &arguments);
-            let expected = kernels::row_merge(&near, sites.size, band, &mut stacks, &mut words);
-            let (found, found_live, begins) =
-                (gpu.fetch(entries.view()), gpu.fetch(live.view()), gpu.fetch(starts.view()));
-            for (stack, word) in words.iter().enumerate() {
-                let bands = width.div_ceil(band) as usize;
-                if !is_wanted(&wanted_rows, stack / bands) {
-                    assert_eq!(begins[stack], 7, "{name}");
-                    continue;
+            let bands = width.div_ceil(band);
+            // All at once, and in two turns.
+            for groups in [&[bands][..], &[3, bands]] {
+                let (mut stacks, mut words) = kernels::row_stacks(&near, sites.size, band);
+                let [nearest, entries, live] = buffers(gpu, [&halves(&near, width), &stacks, &words]);
+                let starts = gpu.buffer(&vec![7_u32; words.len()]);
+                let mut unit = 1;
+                for &group in groups {
+                    let arguments = RowMergeArgs {
+                        nearest: nearest.view(),
+                        wanted: wanted.view(),
+                        entries: entries.view(),
+                        live: live.view(),
+                        starts: starts.view(),
+                        width,
+                        height,
+                        band,
+                        unit,
+                        group,
+                    };
+                    run::<RowMerge>(gpu, (height * bands.div_ceil(group)) as usize, &arguments);
+                    unit = group.min(bands);
+                    let expected = kernels::row_merge(&near, sites.size, [band, group], &mut stacks, &mut words, 7);
+                    let (found, found_live, begins) =
+                        (gpu.fetch(entries.view()), gpu.fetch(live.view()), gpu.fetch(starts.view()));
+                    for (stack, word) in words.iter().enumerate() {
+                        let (y, b) = (stack / bands as usize, stack % bands as usize);
+                        if !is_wanted(&wanted_rows, y) {
+                            assert_eq!(begins[stack], 7, "{name}");
+                            continue;
+                        }
+                        assert_eq!((begins[stack], found_live[stack]), (expected[stack], *word), "{name}");
+                        // An entry that has been left as the first for a while, and was taken off later, keeps what it had.
+                        let start = y * width as usize + b * band as usize;
+                        let (first, end) = (start + (word & 0xff) as usize, start + (word >> 8 & 0xff) as usize);
+                        assert_eq!(found[first..end], stacks[first..end], "{name}");
+                    }
+                    if group >= bands {
+                        break;
+                    }
                 }
-                assert_eq!((begins[stack], found_live[stack]), (expected[stack], *word), "{name}");
-                // An entry that has been left as the first for a while, and was taken off later, keeps what it had then.
-                let start = stack / bands * width as usize + stack % bands * band as usize;
-                let (first, end) = (start + (word & 0xff) as usize, start + (word >> 8 & 0xff) as usize);
-                assert_eq!(found[first..end], stacks[first..end], "{name}");
             }
         }
     });
@@ -234,7 +249,8 @@ fn color_pixels() {
             let (input, counts) = ranked(&sites);
             let near = kernels::column_fill(&input, sites.size);
             let (mut stacks, mut words) = kernels::row_stacks(&near, sites.size, band);
-            let begins = kernels::row_merge(&near, sites.size, band, &mut stacks, &mut words);
+            let all = width.div_ceil(band);
+            let begins = kernels::row_merge(&near, sites.size, [band, all], &mut stacks, &mut words, 0);
             let [across, down] = tiles_of(sites.size);
             // All of them, in any order; or every other one.
             let tiles: Vec<u32> = (0..across * down).rev().filter(|tile| turn % 2 == 0 || tile % 2 == 0).collect();

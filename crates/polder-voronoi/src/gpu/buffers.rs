@@ -8,7 +8,7 @@ use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunRep
 
 /// The most points: kernels reach 4 GiB from an address.
 pub(super) const MOST_POINTS: usize = 1 << 28;
-const WORDS: usize = 88;
+const WORDS: usize = 92;
 
 /// Places of single words in the counts: views begin at multiples of 4 words.
 #[derive(Clone, Copy)]
@@ -25,7 +25,7 @@ pub(super) enum Word {
     Phase = 48,
     ListedOnce = 60,
     Listed = 64,
-    /// Five sizes of dispatches.
+    /// Six sizes of dispatches.
     Groups = 68,
 }
 
@@ -35,7 +35,8 @@ pub(super) enum Planned {
     ColumnEnds,
     ColumnFill,
     RowStacks,
-    RowMerge,
+    MergeGroups,
+    MergeRows,
     Tiles,
 }
 

@@ -147,6 +147,8 @@ impl Stage {
         let (ends, live, starts) = (buffers.ends.view(), buffers.live.view(), buffers.starts.view());
         let (rows, columns) = (self.tuning.rows, self.tuning.columns);
         let (bands, stacks) = (height.div_ceil(rows), width.div_ceil(columns));
+        // Merged in two turns of about as many bands each.
+        let group = stacks.isqrt().max(1);
         let fills = width.div_ceil(2) as usize * bands as usize;
         let arguments = PlanBandsArgs {
             left_count,
@@ -154,7 +156,8 @@ impl Stage {
             column_groups: ends.len().div_ceil(WORKGROUP as usize) as u32,
             fill_groups: fills.div_ceil(WORKGROUP as usize) as u32,
             stack_groups: height.div_ceil(self.tuning.row_lanes) * stacks,
-            merge_groups: height.div_ceil(ROWS),
+            merge_groups: (height as usize * stacks.div_ceil(group) as usize).div_ceil(ROWS as usize) as u32,
+            row_groups: height.div_ceil(ROWS),
         };
         recording.dispatch(&self.plan_bands, [1, 1, 1], &arguments);
         let arguments = ColumnEndsArgs { bits, ends, width, height, band: rows };
@@ -163,8 +166,14 @@ impl Stage {
         recording.dispatch_indirect(&self.column_fill, buffers.groups(Planned::ColumnFill)?, &arguments);
         let arguments = RowStacksArgs { nearest, wanted, entries, live, width, height };
         recording.dispatch_indirect(&self.row_stacks, buffers.groups(Planned::RowStacks)?, &arguments);
-        let arguments = RowMergeArgs { nearest, wanted, entries, live, starts, width, height, band: columns };
-        recording.dispatch_indirect(&self.row_merge, buffers.groups(Planned::RowMerge)?, &arguments);
+        let (unit, band) = (1, columns);
+        let arguments = RowMergeArgs { nearest, wanted, entries, live, starts, width, height, band, unit, group };
+        if group < stacks {
+            recording.dispatch_indirect(&self.row_merge, buffers.groups(Planned::MergeGroups)?, &arguments);
+        }
+        let unit = if group < stacks { group } else { 1 };
+        let arguments = RowMergeArgs { unit, group: stacks, ..arguments };
+        recording.dispatch_indirect(&self.row_merge, buffers.groups(Planned::MergeRows)?, &arguments);
         let arguments = ColorPixelsArgs {
             bits,
             ranks,

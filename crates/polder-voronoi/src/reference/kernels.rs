@@ -156,8 +156,9 @@ pub fn pixels_of_tile(tile: u32, [width, height]: [u32; 2]) -> impl Iterator<Ite
 }
 
 /// Sizes of dispatches: none if no tile is left, else as many workgroups as wanted, and one for each tile.
-pub fn plan_bands(left: u32, groups: [u32; 4]) -> [[u32; 3]; 5] {
-    let sizes = if left == 0 { [0; 5] } else { [groups[0], groups[1], groups[2], groups[3], left] };
+pub fn plan_bands(left: u32, groups: [u32; 5]) -> [[u32; 3]; 6] {
+    let [a, b, c, d, e] = if left == 0 { [0; 5] } else { groups };
+    let sizes = [a, b, c, d, e, left];
     sizes.map(|size| polder_vulkan::groups_for(size as usize, 1))
 }
 
@@ -234,38 +235,49 @@ pub fn row_stacks(nearest: &[u32], [width, _]: [u32; 2], band: u32) -> (Vec<u32>
     (entries, live)
 }
 
-/// Narrows each stack to those that win against all of the row, gives the first of them its first pixel, links each stack
-/// that is left to the one before, and returns the first pixel of each; an empty one has that of the next.
+/// Narrows each stack to those that win against all of its group of bands, gives the first of them its first pixel, and links
+/// each stack that is left to the one before in its group. If the group is the row: returns the first pixel of each; an empty
+/// one has that of the next. Else: for the first band of each group the last one with a stack, and `untouched` for the others.
 pub fn row_merge(
     nearest: &[u32],
     [width, height]: [u32; 2],
-    band: u32,
+    [band, group]: [u32; 2],
     entries: &mut [u32],
     live: &mut [u32],
+    untouched: u32,
 ) -> Vec<u32> {
     let bands = width.div_ceil(band);
-    let mut starts = vec![width; live.len()];
+    let mut starts = vec![if group < bands { untouched } else { width }; live.len()];
     for y in 0..height {
         let row = (y * width) as usize;
-        let columns: Vec<u32> = (0..width).collect();
-        let winners = winners(&nearest[row..][..width as usize], y, &columns);
-        let mut previous = 0xffff;
-        for b in 0..bands {
-            let (word, start) = ((y * bands + b) as usize, row + (b * band) as usize);
-            let stack = &mut entries[start..][..(live[word] >> 8) as usize];
-            let won = |entry: &u32| winners.iter().find(|(column, _)| *column == entry & 0xffff);
-            let first = stack.iter().position(|entry| won(entry).is_some());
-            let last = stack.iter().rposition(|entry| won(entry).is_some());
-            live[word] = 0;
-            if let (Some(first), Some(last)) = (first, last) {
-                let from = won(&stack[first]).map_or(0, |(_, from)| *from);
-                stack[first] = from << 16 | stack[first] & 0xffff;
-                live[word] = previous << 16 | (last as u32 + 1) << 8 | first as u32;
-                previous = b;
-                starts[word] = from;
+        let all: Vec<u32> = (0..bands).collect();
+        for group_bands in all.chunks(group as usize) {
+            let columns: Vec<u32> = (group_bands[0] * band..width.min((group_bands[0] + group) * band)).collect();
+            let winners = winners(&nearest[row..][..width as usize], y, &columns);
+            let mut previous = 0xffff;
+            for &b in group_bands {
+                let (word, start) = ((y * bands + b) as usize, row + (b * band) as usize);
+                let begin = live[word] & 0xff;
+                let stack = &mut entries[start..][begin as usize..(live[word] >> 8 & 0xff) as usize];
+                let won = |entry: &u32| winners.iter().find(|(column, _)| *column == entry & 0xffff);
+                let first = stack.iter().position(|entry| won(entry).is_some());
+                let last = stack.iter().rposition(|entry| won(entry).is_some());
+                live[word] = 0;
+                if let (Some(first), Some(last)) = (first, last) {
+                    let from = won(&stack[first]).map_or(0, |(_, from)| *from);
+                    stack[first] = from << 16 | stack[first] & 0xffff;
+                    live[word] = previous << 16 | (begin + last as u32 + 1) << 8 | (begin + first as u32);
+                    previous = b;
+                    if group >= bands {
+                        starts[word] = from;
+                    }
+                }
+            }
+            if group < bands {
+                starts[(y * bands + group_bands[0]) as usize] = previous;
             }
         }
-        for b in (0..bands.saturating_sub(1)).rev() {
+        for b in (0..bands.saturating_sub(1)).rev().filter(|_| group >= bands) {
             let word = (y * bands + b) as usize;
             if live[word] == 0 {
                 starts[word] = starts[word + 1];
