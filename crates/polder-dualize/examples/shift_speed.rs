@@ -3,6 +3,7 @@
 
 use polder_dualize::gpu::{dualize, shift};
 use polder_dualize::{DVec2, reference};
+use polder_flip::FlipReport;
 use polder_flip::gpu::{Arithmetic, Mesh, Tally};
 use polder_voronoi::{GridMapping, Options};
 use polder_vulkan::{Buffer, Device, DeviceOptions, Engine, Recording, RunOptions};
@@ -69,8 +70,10 @@ fn measure(device: &Device, count: usize, check: bool) -> Result<(), Failed> {
     let points_view = uploaded.view();
     let input = shift::Input { mapping: &mapping, points: points_view, order: diagram.order(), pixels, sites };
     let mut recording = Recording::new(device);
+    tally.record_clear(&mut recording);
     let flips = shift::Flips { stage: &flip, buffers: &flip_buffers, tally: &tally };
     let read = stage.record(&mut recording, input, &mesh, flips, &buffers)?;
+    let hull = tally.read(&mut recording);
 
     // A device that was idle is slow at first.
     let warm = Instant::now();
@@ -81,7 +84,7 @@ fn measure(device: &Device, count: usize, check: bool) -> Result<(), Failed> {
     let options = RunOptions { timestamps: true, ..RunOptions::default() };
     let mut times: BTreeMap<String, Vec<f64>> = BTreeMap::new();
     let (mut totals, mut clock, mut waits) = (Vec::new(), Vec::new(), 0);
-    let mut counts = shift::Counts::default();
+    let (mut counts, mut flips) = (shift::Counts::default(), FlipReport::default());
     for _ in 0..RUNS {
         engine.run(&before, &RunOptions::default())?;
         let start = Instant::now();
@@ -89,7 +92,7 @@ fn measure(device: &Device, count: usize, check: bool) -> Result<(), Failed> {
         clock.push(start.elapsed().as_secs_f64() * 1e3);
         engine.run(&before, &RunOptions::default())?;
         let report = engine.run(&recording, &options)?;
-        counts = read.result(&report)?;
+        (counts, flips) = (read.result(&report)?, hull.report(&report));
         totals.push(report.timings.total().as_secs_f64() * 1e3);
         for (kernel, timing) in report.timings.iter() {
             let name = format!("{kernel:<20} {:>4} x", timing.count);
@@ -100,7 +103,10 @@ fn measure(device: &Device, count: usize, check: bool) -> Result<(), Failed> {
         times.sort_by(f64::total_cmp);
         times[times.len() / 2]
     };
-    println!("{count} points, {site_count} sites, {} bytes: {counts:?}", shift::Stage::estimate(count).bytes());
+    println!(
+        "{count} points, {site_count} sites, {} bytes: {counts:?}, {flips:?}",
+        shift::Stage::estimate(count).bytes()
+    );
     println!("  {:.3} ms by kernels, {:.3} ms with {waits} waits", median(totals), median(clock));
     for (name, times) in times {
         println!("    {name} {:>9.4} ms in all", median(times));
