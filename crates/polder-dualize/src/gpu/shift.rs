@@ -136,8 +136,9 @@ impl Stage {
         let hull = flips.buffers.list();
         self.record_pin(recording, input, mesh, hull, buffers)?;
         flips.stage.record_close_hull(recording, mesh, flips.buffers, Some(hull), None, flips.tally)?;
+        let unclosed = recording.read(flips.buffers.pending()?);
         self.record_take_out(recording, input, mesh, buffers)?;
-        Ok(buffers.read(recording))
+        Ok(buffers.read(recording, unclosed))
     }
 
     /// Steps 1 and 2: afterwards sites are where they stay until they are taken out, and `hull` lists all edges to the

@@ -128,9 +128,8 @@ impl Buffers {
         Err(Error::Recording { command: "shift", why })
     }
 
-    /// Asks a recording to bring the counts back.
-    pub fn read(&self, recording: &mut Recording) -> Read {
-        Read { words: recording.read(self.words.view()) }
+    pub(super) fn read(&self, recording: &mut Recording, unclosed: ReadBack) -> Read {
+        Read { words: recording.read(self.words.view()), unclosed }
     }
 }
 
@@ -151,6 +150,8 @@ pub struct Counts {
 #[derive(Clone, Copy, Debug)]
 pub struct Read {
     words: ReadBack,
+    /// Reflex vertices that are left.
+    unclosed: ReadBack,
 }
 
 impl Read {
@@ -158,12 +159,19 @@ impl Read {
     ///
     /// # Errors
     ///
-    /// [`DualizeError::Broken`] if the triangles around some vertex do not close up.
+    /// [`DualizeError::Broken`] if the triangles around some vertex do not close up, [`DualizeError::BoundExceeded`] if the
+    /// hull did not become convex in as many rounds as its flips may take.
     pub fn result(&self, report: &RunReport) -> Result<Counts, DualizeError> {
         let words = report.words(self.words);
         let word = |word: Word| words.get(word as usize).copied().unwrap_or(0);
         if word(Word::Broken) != 0 {
             return Err(DualizeError::Broken { stage: "shift", vertex: !word(Word::Broken) });
+        }
+        if report.words(self.unclosed).iter().any(|&left| left != 0) {
+            return Err(DualizeError::BoundExceeded {
+                stage: "shift, close hull",
+                bound: u64::from(polder_flip::gpu::TAIL_ROUNDS),
+            });
         }
         let count = |of| u64::from(word(of));
         Ok(Counts {

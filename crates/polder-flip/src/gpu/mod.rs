@@ -9,6 +9,7 @@ mod record;
 pub use buffers::{Buffers, EdgeList, Tally, TallyRead};
 pub use mesh::{CONSTRAINED, HALF_EDGE, MOST_SLOTS, Mesh};
 pub use predicates::{Arithmetic, Kernels, Signs};
+pub use record::TAIL_ROUNDS;
 
 use crate::kernels::*;
 use polder_vulkan::{Device, DeviceKind, Error, Estimate, Kernel};

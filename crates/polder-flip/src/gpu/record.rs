@@ -16,7 +16,7 @@ const WIDE: usize = 6;
 /// Fewer illegal edges than these are left to the tail, which keeps them up to four times as many.
 const FEW: u32 = 256;
 /// Rounds of one tail, and tests: so that no dispatch takes long.
-const TAIL_ROUNDS: u32 = 8192;
+pub const TAIL_ROUNDS: u32 = 8192;
 const TAIL_TESTS: u32 = 1 << 20;
 /// Of closing a hull: wide rounds, an even number, and tails.
 const HULL_WIDE: usize = 2;
