@@ -36,9 +36,9 @@ type Make = fn(&mut Random) -> [DVec2; 4];
 /// Numbers of many bits, and determinants that are zero or nearly so.
 const WIDE: [(&str, Make); 8] = [
     ("an integer circle of 13 bits", |r| {
-        // 5525 is 5 * 5 * 13 * 17, so there are many; these are some.
+        // 8125 is 13 * 5^4, so there are many; these are some.
         let points: [(i64, i64); 8] =
-            [(5525, 0), (5500, 525), (5491, 612), (5365, 1320), (5304, 1547), (4715, 2880), (5100, 2125), (5005, 2340)];
+            [(8125, 0), (8120, 285), (8075, 900), (8004, 1397), (7605, 2860), (6851, 4368), (6667, 4644), (6325, 5100)];
         [0; 4].map(|_| {
             let (x, y) = r.pick(&points);
             let (x, y) = if r.below(2) == 0 { (x, y) } else { (y, x) };
@@ -46,12 +46,18 @@ const WIDE: [(&str, Make); 8] = [
             DVec2::new(x as f64 * sign(r), y as f64 * sign(r))
         })
     }),
-    ("nearly collinear integers of 28 bits", |r| {
-        let step = DVec2::new(r.integer(1, 1 << 14) as f64, r.integer(1, 1 << 14) as f64);
-        [0; 4].map(|_| step * r.integer(0, 1 << 14) as f64 + DVec2::X * (r.below(8) / 7) as f64)
+    ("integers of 30 bits, a triangle of area 1/2", |r| {
+        // Neither step changes the area.
+        let (mut p, mut q) = (DVec2::X, DVec2::Y);
+        while p.max(q).max_element() < 1e8 {
+            (p, q) = (q, p + q * r.integer(1, 9) as f64);
+        }
+        let mut points = [p, q, DVec2::ZERO, p];
+        r.shuffle(&mut points[..3]);
+        points
     }),
     ("products of two near the smallest double", |r| {
-        [0; 4].map(|_| DVec2::new(r.unit() - 0.5, r.unit() - 0.5) * ldexp(1.0, r.integer(-545, -525) as i32))
+        [0; 4].map(|_| DVec2::new(r.unit() - 0.5, r.unit() - 0.5) * ldexp(1.0, r.integer(-538, -534) as i32))
     }),
     ("rectangles of all exponents", |r| rectangle(r, -1000, 990)),
     ("rectangles of a few exponents", |r| rectangle(r, -9, 60)),
