@@ -1,8 +1,8 @@
 //! Fixed-point integers of `u32` limbs: exact for every finite `f64`, whatever its magnitude.
 //!
-//! This is the last resort on a CPU and the model of what a device without trustworthy doubles must compute. So it uses
-//! only 32-bit words, additions and subtractions with carry, and products of two words with a high and a low half; no
-//! allocation, no recursion, no 64-bit integer.
+//! This is the last resort on a CPU, and rests on nothing but 32-bit words, additions and subtractions with carry, and
+//! products of two words with a high and a low half; no allocation, no recursion. Kernels have less memory to spare: their
+//! integers sum up products of mantissas from the top.
 //!
 //! # Steps
 //!
