@@ -21,9 +21,12 @@ layout(push_constant, std430) uniform Args {
 
 uint color_of(uint x, uint y) {
     uint bands = (width + band - 1u) / band;
-    // The last band that starts at or before the pixel; the first stack that is not empty starts at 0.
-    uint low = 0u;
-    uint high = bands;
+    // The last band that starts at or before the pixel, mostly its own; the first stack that is not empty starts at 0.
+    uint own = x / band;
+    uint next = own + 1u < bands ? starts.at[y * bands + own + 1u] : NONE;
+    bool before_own = starts.at[y * bands + own] > x;
+    uint low = before_own ? 0u : next <= x ? own + 1u : own;
+    uint high = before_own ? own : next <= x ? bands : own + 1u;
     while (low + 1u < high) {
         uint middle = (low + high) / 2u;
         bool at_or_before = starts.at[y * bands + middle] <= x;

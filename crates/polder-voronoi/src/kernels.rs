@@ -140,7 +140,7 @@ impl Shader for ColorPixels {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "40b9c7786f3a79cbcc86d2cbef083bb43a822edddd194b50703acd806b91a311",
+        source_hash: "1dd671760b0a6834f81d12f674385fdcb73093f55608eb857cf0c6dac254fea9",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

@@ -11,10 +11,13 @@
 //!    or right; then rows are looked at up and down as far as the best site so far is away. That is exact where some site
 //!    lies within [`Tuning::radius`]. Tiles with pixels, in them or next to them, for which none does are left to the
 //!    Parallel Banding Algorithm. Columns: first and last site of each band of rows, then every pixel's nearest row.
-//!    Rows: proximate sites of each band of columns as a stack; the stacks of a row are merged from left to right, which
-//!    takes from the ends that meet and touches nothing inside; each pixel searches the entry that wins it.
-//! 3. *Repair*: pixels without a closer neighbor of their color have been marked as debris by the coloring. One workgroup
-//!    goes on from there in rounds, and recolors in rounds (\[QCT\] Appendix A), until nothing changes.
+//!    Rows: proximate sites of each band of columns as a stack; the stacks of a row are merged from left to right, some
+//!    neighbors at once and then these, which takes from the ends that meet and touches nothing inside; each pixel searches
+//!    the entry that wins it.
+//! 3. *Repair*: the coloring has marked the pixels without a closer neighbor of their color. They are debris and lose it;
+//!    neighbors may thereby become debris; and so on until there is none. Then debris takes the best color on offer, and
+//!    looks again where a neighbor has changed, until nothing does (\[QCT\] Appendix A). The first turns of both are shared by
+//!    all workgroups, the rest is left to one, which needs no dispatch between two rounds.
 //!
 //! Departures: entries of the stacks carry the first pixel that they win, which is exact in integers, so that ties go by
 //! the total order of [`Key`](crate::Key) in every step, and the last step is a search and not a walk. Recoloring reads and
