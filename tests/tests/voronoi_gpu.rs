@@ -206,6 +206,31 @@ fn a_recording_serves_again() {
 }
 
 #[test]
+fn results_outlive_their_scratch_memory() {
+    with_device(|Shared { gpu, stages, .. }| {
+        let points = polder_io::generate::uniform(5000, 3);
+        let expected = reference::diagram(points.points(), &Options::default()).unwrap();
+        let size = expected.mapping.size();
+        let uploaded = gpu.buffer(points.points());
+        let before = gpu.device.memory_use().used;
+        let buffers = stages[0].buffers(5000, size).unwrap();
+        let all = gpu.device.memory_use().used - before;
+        let mut recording = gpu.recording();
+        stages[0].record(&mut recording, &expected.mapping, uploaded.view(), &buffers).unwrap();
+        gpu.run(&recording);
+        drop(recording);
+        let results = buffers.into_results();
+        let kept = gpu.device.memory_use().used - before;
+        assert!(kept > 0 && kept < all / 2, "{kept} of {all}");
+        assert_eq!(results.size(), size);
+        assert!(gpu.fetch(results.order()) == expected.sites.order);
+        assert!(gpu.fetch(results.pixels()) == expected.sites.pixels);
+        assert!(gpu.fetch(results.colors()) == expected.diagram.colors);
+        assert_eq!(gpu.fetch(results.site_count().unwrap()), [expected.sites.count as u32]);
+    });
+}
+
+#[test]
 fn what_does_not_fit_is_refused() {
     with_device(|Shared { gpu, stages, .. }| {
         let stage = &stages[0];

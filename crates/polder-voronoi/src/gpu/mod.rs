@@ -27,9 +27,11 @@
 mod bounds;
 mod buffers;
 mod record;
+mod results;
 
 pub use bounds::{BoundsRead, FindBounds};
 pub use buffers::{Buffers, CountsRead};
+pub use results::Results;
 
 use crate::kernels::*;
 use polder_vulkan::{Device, Error, Estimate, Kernel};
