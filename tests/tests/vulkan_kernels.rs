@@ -68,47 +68,69 @@ fn scan_sums() {
     }
 }
 
+/// With scanned sums, and with sums as they are: then with the sum of all.
 #[test]
 fn scan_tiles() {
     let mut gpu = Gpu::open();
-    let kernel = Kernel::<ScanTiles>::new(&gpu.device, &[]).unwrap();
+    let kernels = [0, 1].map(|raw| Kernel::<ScanTiles>::new(&gpu.device, &[("RAW", raw)]).unwrap());
     for len in LENGTHS {
-        let (input, base) = (words(3, len), words(4, len.div_ceil(TILE)));
-        let (words, sums, scanned) = (gpu.buffer(&input), gpu.buffer(&base), gpu.buffer(&vec![7_u32; len]));
-        let (limit, scanned_view) = (len as u32, scanned.view());
-        let arguments =
-            ScanTilesArgs { words: words.view(), scanned: scanned_view, sums: sums.view(), counter: None, limit };
-        let mut recording = gpu.recording();
-        recording.dispatch(&kernel, groups_for(len, TILE as u32), &arguments);
-        gpu.run(&recording);
-        assert!(gpu.fetch(scanned.view()) == reference::scan_tiles(&input, &base, TILE), "{len}");
+        let input = words(3, len);
+        let raw = reference::scan_reduce(&input, TILE);
+        let (base, all) = reference::scan_sums(&raw);
+        for (kernel, tiles) in kernels.iter().zip([&base, &raw]) {
+            let is_raw = std::ptr::eq(tiles, &raw);
+            for with_total in [true, false] {
+                let (words, sums, scanned) = (gpu.buffer(&input), gpu.buffer(tiles), gpu.buffer(&vec![7_u32; len]));
+                let (total, counter) = (gpu.buffer(&[7_u32]), gpu.buffer(&[len as u32]));
+                let arguments = ScanTilesArgs {
+                    words: words.view(),
+                    scanned: scanned.view(),
+                    sums: sums.view(),
+                    total: with_total.then(|| total.view()),
+                    counter: Some(counter.view()),
+                    limit: u32::MAX,
+                };
+                let mut recording = gpu.recording();
+                // Workgroups beyond the end, too.
+                recording.dispatch(kernel, groups_for(len + 3 * TILE, TILE as u32), &arguments);
+                gpu.run(&recording);
+                assert!(gpu.fetch(scanned.view()) == reference::scan_tiles(&input, &base, TILE), "{len}");
+                assert_eq!(gpu.fetch(total.view()), [if is_raw && with_total { all } else { 7 }], "{len}");
+            }
+        }
     }
 }
 
 #[test]
 fn compact_write() {
     let mut gpu = Gpu::open();
-    let kernel = Kernel::<CompactWrite>::new(&gpu.device, &[]).unwrap();
+    let kernels = [0, 1].map(|raw| Kernel::<CompactWrite>::new(&gpu.device, &[("RAW", raw)]).unwrap());
     for len in LENGTHS {
         let (flag, value) = (flags(len), words(5, len));
-        let (base, _) = reference::scan_sums(&reference::compact_count(&flag, TILE));
-        let (flags, values, sums) = (gpu.buffer(&flag), gpu.buffer(&value), gpu.buffer(&base));
-        for with_values in [true, false] {
-            let kept = gpu.buffer(&vec![7_u32; len]);
-            let mut recording = gpu.recording();
-            let arguments = CompactWriteArgs {
-                flags: flags.view(),
-                values: with_values.then(|| values.view()),
-                kept: kept.view(),
-                sums: sums.view(),
-                counter: None,
-                limit: len as u32,
-            };
-            recording.dispatch(&kernel, groups_for(len, TILE as u32), &arguments);
-            gpu.run(&recording);
-            let mut expected = vec![7; len];
-            reference::compact_write(&flag, with_values.then_some(&value), &base, TILE, &mut expected);
-            assert!(gpu.fetch(kept.view()) == expected, "{len}");
+        let raw = reference::compact_count(&flag, TILE);
+        let (base, all) = reference::scan_sums(&raw);
+        let (flags, values) = (gpu.buffer(&flag), gpu.buffer(&value));
+        for (kernel, tiles) in kernels.iter().zip([&base, &raw]) {
+            let is_raw = std::ptr::eq(tiles, &raw);
+            for with_values in [true, false] {
+                let (kept, sums, total) = (gpu.buffer(&vec![7_u32; len]), gpu.buffer(tiles), gpu.buffer(&[7_u32]));
+                let mut recording = gpu.recording();
+                let arguments = CompactWriteArgs {
+                    flags: flags.view(),
+                    values: with_values.then(|| values.view()),
+                    kept: kept.view(),
+                    sums: sums.view(),
+                    total: Some(total.view()),
+                    counter: None,
+                    limit: len as u32,
+                };
+                recording.dispatch(kernel, groups_for(len + 3 * TILE, TILE as u32), &arguments);
+                gpu.run(&recording);
+                let mut expected = vec![7; len];
+                reference::compact_write(&flag, with_values.then_some(&value), &base, TILE, &mut expected);
+                assert!(gpu.fetch(kept.view()) == expected, "{len}");
+                assert_eq!(gpu.fetch(total.view()), [if is_raw { all } else { 7 }], "{len}");
+            }
         }
     }
 }

@@ -53,6 +53,35 @@ fn scan_of_a_length_on_the_device_leaves_the_rest() {
     }
 }
 
+/// Around the length from which on the sums of the tiles are scanned by a kernel of their own.
+#[test]
+fn scan_and_compaction_of_many_tiles() {
+    let mut gpu = Gpu::open();
+    let most = (1 << 24) + 1;
+    let (scan, compact) = (Scan::new(&gpu.device, most).unwrap(), Compact::new(&gpu.device, most).unwrap());
+    let (input, output) = (gpu.buffer(&words(1, most)), gpu.buffer(&vec![7_u32; most]));
+    let flags: Vec<u32> = words(1, most).iter().map(|word| word & 1).collect();
+    let (flagged, total) = (gpu.buffer(&flags), gpu.buffer(&[9_u32; 8]));
+    let first = words(1, most);
+    for limit in [1 << 24, most] {
+        let mut recording = gpu.recording();
+        let (sum, kept) = (total.slice(0..1).unwrap(), total.slice(4..5).unwrap());
+        scan.record(&mut recording, limit, input.view(), output.view(), Some(sum));
+        let read = recording.read(sum);
+        let report = gpu.run(&recording);
+        let (expected, all) = reference::exclusive_scan(&first[..limit]);
+        assert_eq!((report.word(read), report.dispatches), (all, if limit == most { 3 } else { 2 }));
+        assert!(gpu.fetch(output.view())[..limit] == expected, "{limit}");
+        let mut recording = gpu.recording();
+        compact.record(&mut recording, limit, flagged.view(), None, output.view(), kept);
+        let read = recording.read(kept);
+        let report = gpu.run(&recording);
+        let expected = reference::compact_indices(&flags[..limit]);
+        assert_eq!(report.word(read) as usize, expected.len());
+        assert!(gpu.fetch(output.view())[..expected.len()] == expected, "{limit}");
+    }
+}
+
 #[test]
 fn compaction_of_any_length() {
     let mut gpu = Gpu::open();

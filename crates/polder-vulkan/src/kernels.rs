@@ -47,7 +47,8 @@ impl Shader for CompactCount {
     }
 }
 
-/// Stream compaction, 3 of 3: writes what is flagged, in order: values, or without them indices.
+/// Stream compaction, 3 of 3: writes what is flagged, in order: values, or without them indices. Where the
+/// sums are not scanned, it writes how many there are.
 #[derive(Debug, Clone, Copy)]
 pub enum CompactWrite {}
 
@@ -62,6 +63,8 @@ pub struct CompactWriteArgs<'a> {
     pub kept: View<'a, u32>,
     /// read
     pub sums: View<'a, u32>,
+    /// written, may be left out
+    pub total: Option<View<'a, u32>>,
     /// read, may be left out
     pub counter: Option<View<'a, u32>>,
     /// a value
@@ -75,18 +78,19 @@ impl Shader for CompactWrite {
         name: "compact_write",
         words: include_spirv!("../spv/compact_write.spv"),
         without_float64: None,
-        argument_bytes: 44,
+        argument_bytes: 52,
         buffers: &[
             BufferArgument { name: "flags", offset: 0, access: Access::Read },
             BufferArgument { name: "values", offset: 8, access: Access::Read },
             BufferArgument { name: "kept", offset: 16, access: Access::Write },
             BufferArgument { name: "sums", offset: 24, access: Access::Read },
-            BufferArgument { name: "counter", offset: 32, access: Access::Read },
+            BufferArgument { name: "total", offset: 32, access: Access::Write },
+            BufferArgument { name: "counter", offset: 40, access: Access::Read },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
-        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }, Constant { name: "RAW", id: 1, default: 0 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "b80ca302e7ec7450114f5eaff6f321a71659665f0243093475f52851d3794ea9",
+        source_hash: "9002c07eb9877df9c43f83a40007c2b62c07e879b8ebd182e34d7b741fc4c1a5",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -95,8 +99,9 @@ impl Shader for CompactWrite {
         encoder.optional(8, args.values);
         encoder.buffer(16, args.kept);
         encoder.buffer(24, args.sums);
-        encoder.optional(32, args.counter);
-        encoder.value(40, args.limit);
+        encoder.optional(32, args.total);
+        encoder.optional(40, args.counter);
+        encoder.value(48, args.limit);
     }
 }
 
@@ -472,7 +477,8 @@ impl Shader for ScanSums {
     }
 }
 
-/// Exclusive scan, 3 of 3: scans each tile, on from the sum of all tiles before it. Output may be input.
+/// Exclusive scan, 3 of 3: scans each tile, on from the sum of all tiles before it. Output may be input. Where the sums are
+/// not scanned, it writes the sum of all.
 #[derive(Debug, Clone, Copy)]
 pub enum ScanTiles {}
 
@@ -485,6 +491,8 @@ pub struct ScanTilesArgs<'a> {
     pub scanned: View<'a, u32>,
     /// read
     pub sums: View<'a, u32>,
+    /// written, may be left out
+    pub total: Option<View<'a, u32>>,
     /// read, may be left out
     pub counter: Option<View<'a, u32>>,
     /// a value
@@ -498,17 +506,18 @@ impl Shader for ScanTiles {
         name: "scan_tiles",
         words: include_spirv!("../spv/scan_tiles.spv"),
         without_float64: None,
-        argument_bytes: 36,
+        argument_bytes: 44,
         buffers: &[
             BufferArgument { name: "words", offset: 0, access: Access::Read },
             BufferArgument { name: "scanned", offset: 8, access: Access::Write },
             BufferArgument { name: "sums", offset: 16, access: Access::Read },
-            BufferArgument { name: "counter", offset: 24, access: Access::Read },
+            BufferArgument { name: "total", offset: 24, access: Access::Write },
+            BufferArgument { name: "counter", offset: 32, access: Access::Read },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
-        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }, Constant { name: "RAW", id: 1, default: 0 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "152b398c95fc56b15b14ec2e0657d6ebd0806a27909fb5cea797e0f42ee3582b",
+        source_hash: "d58dacb57b6d334856629b05ebe1d5d6c8d0acdfe3985d62e1b7b944b2701a52",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -516,8 +525,9 @@ impl Shader for ScanTiles {
         encoder.buffer(0, args.words);
         encoder.buffer(8, args.scanned);
         encoder.buffer(16, args.sums);
-        encoder.optional(24, args.counter);
-        encoder.value(32, args.limit);
+        encoder.optional(24, args.total);
+        encoder.optional(32, args.counter);
+        encoder.value(40, args.limit);
     }
 }
 

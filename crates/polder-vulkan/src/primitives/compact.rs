@@ -1,6 +1,6 @@
 //! Stream compaction.
 
-use super::scan::{SumsScan, TILE, WORKGROUP};
+use super::scan::{SumsScan, TILE, WORKGROUP, stay_raw};
 use super::{Count, MOST, holds};
 use crate::Error;
 use crate::buffer::{Buffer, View};
@@ -18,6 +18,7 @@ pub struct Compact {
     count: Kernel<CompactCount>,
     sums_scan: SumsScan,
     write: Kernel<CompactWrite>,
+    raw_write: Kernel<CompactWrite>,
     sums: Buffer<u32>,
     capacity: usize,
 }
@@ -35,6 +36,7 @@ impl Compact {
             count: Kernel::new(device, &[("WORKGROUP", WORKGROUP)])?,
             sums_scan: SumsScan::new(device)?,
             write: Kernel::new(device, &[("WORKGROUP", WORKGROUP)])?,
+            raw_write: Kernel::new(device, &[("WORKGROUP", WORKGROUP), ("RAW", 1)])?,
             sums: Buffer::new(device, "flags in tiles", capacity.div_ceil(TILE as usize))?,
             capacity,
         })
@@ -65,8 +67,12 @@ impl Compact {
         let (counter, sums) = (count.counter, self.sums.view());
         let arguments = CompactCountArgs { words: flags, sums, counter, limit: count.limit() };
         recording.dispatch(&self.count, groups, &arguments);
-        self.sums_scan.record(recording, count, sums, Some(total));
-        let arguments = CompactWriteArgs { flags, values, kept, sums, counter, limit: count.limit() };
-        recording.dispatch(&self.write, groups, &arguments);
+        let raw = stay_raw(limit);
+        if !raw {
+            self.sums_scan.record(recording, count, sums, Some(total));
+        }
+        let (write, total) = if raw { (&self.raw_write, Some(total)) } else { (&self.write, None) };
+        let arguments = CompactWriteArgs { flags, values, kept, sums, total, counter, limit: count.limit() };
+        recording.dispatch(write, groups, &arguments);
     }
 }

@@ -3,8 +3,8 @@
 //! Each is made once for a capacity, which says how much it holds ([`Estimate`](crate::Estimate)), and then records any
 //! length up to it. Making one costs no more than its scratch memory, as kernels are compiled once a device. A length is a
 //! number that the host knows, or one that the device wrote ([`Count`]). All work in tiles that one workgroup takes, in two
-//! or three kernels: sums of the tiles, a scan of the sums, the tiles again. No workgroup waits for another, which Vulkan
-//! would not promise to end; decoupled look-back, which reads memory once less, does.
+//! kernels: sums of the tiles, and the tiles again; beyond 2^24 elements a scan of the sums stands between. No workgroup
+//! waits for another, which Vulkan would not promise to end; decoupled look-back, which reads memory once less, does.
 
 mod compact;
 mod copy;

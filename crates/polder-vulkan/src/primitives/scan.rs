@@ -15,6 +15,15 @@ pub(super) const WORKGROUP: u32 = 256;
 pub(super) const TILE: u32 = EACH * WORKGROUP;
 const NAME: &str = "scan";
 
+/// Up to so many tiles, each adds up the sums of those before it, which is faster than a kernel between. Beyond, it is not:
+/// the work goes with the square.
+const FEW_TILES: usize = 4096;
+
+/// Whether the sums of so many words stay as they are.
+pub(super) fn stay_raw(limit: usize) -> bool {
+    (1..=FEW_TILES * TILE as usize).contains(&limit)
+}
+
 /// The kernel between the two that walk the tiles: scans their sums. Compaction and sort share it.
 #[derive(Debug)]
 pub(super) struct SumsScan {
@@ -46,6 +55,7 @@ pub struct Scan {
     reduce: Kernel<ScanReduce>,
     sums_scan: SumsScan,
     tiles: Kernel<ScanTiles>,
+    raw_tiles: Kernel<ScanTiles>,
     sums: Buffer<u32>,
     capacity: usize,
 }
@@ -63,6 +73,7 @@ impl Scan {
             reduce: Kernel::new(device, &[("WORKGROUP", WORKGROUP)])?,
             sums_scan: SumsScan::new(device)?,
             tiles: Kernel::new(device, &[("WORKGROUP", WORKGROUP)])?,
+            raw_tiles: Kernel::new(device, &[("WORKGROUP", WORKGROUP), ("RAW", 1)])?,
             sums: Buffer::new(device, "sums of tiles", capacity.div_ceil(TILE as usize))?,
             capacity,
         })
@@ -91,8 +102,12 @@ impl Scan {
         let (counter, sums) = (count.counter, self.sums.view());
         let arguments = ScanReduceArgs { words, sums, counter, limit: count.limit() };
         recording.dispatch(&self.reduce, groups, &arguments);
-        self.sums_scan.record(recording, count, sums, total);
-        let arguments = ScanTilesArgs { words, scanned, sums, counter, limit: count.limit() };
-        recording.dispatch(&self.tiles, groups, &arguments);
+        let raw = stay_raw(limit);
+        if !raw {
+            self.sums_scan.record(recording, count, sums, total);
+        }
+        let (tiles, total) = if raw { (&self.raw_tiles, total) } else { (&self.tiles, None) };
+        let arguments = ScanTilesArgs { words, scanned, sums, total, counter, limit: count.limit() };
+        recording.dispatch(tiles, groups, &arguments);
     }
 }
