@@ -28,8 +28,8 @@ fn main() -> Result<(), DualizeError> {
     println!("shifted: {shifted}");
 
     // Stage 4: these and the points that own no pixel are inserted.
-    let (missing, starts) = reference::points_to_insert(&voronoi.diagram, sites, &shifted);
-    let inserted = reference::insert(shifted.mesh, &positions, &missing, &starts)?;
+    let new = reference::points_to_insert(&voronoi.diagram, sites, &shifted);
+    let inserted = reference::insert(shifted.mesh, &positions, &new)?;
     println!("inserted: {inserted}");
 
     // Back to the input's numbering: the lowest of equal points stands for them.

@@ -208,6 +208,652 @@ impl Shader for DualizeWrite {
     }
 }
 
+/// Insertion, before the rounds, 3 of 5: where no triangle is finite, the least priority of the points that lie off the line
+/// through the first and last vertex.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertApex {}
+
+/// Arguments of [`InsertApex`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertApexArgs<'a> {
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for InsertApex {
+    type Args<'a> = InsertApexArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_apex",
+        words: include_spirv!("../spv/insert_apex.spv"),
+        without_float64: Some(include_spirv!("../spv/insert_apex.integers.spv")),
+        argument_bytes: 20,
+        buffers: &[
+            BufferArgument { name: "positions", offset: 0, access: Access::Read },
+            BufferArgument { name: "words", offset: 8, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "9e8311d19ad48fcae5a5bc5bbf365d92ed5473b82eb9bff443d8ad119054cf49",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.positions);
+        encoder.buffer(8, args.words);
+        encoder.value(16, args.count);
+    }
+}
+
+/// Insertion, before the rounds, 1 of 5: some half-edge out of each vertex, the lowest finite triangle, and no point is a
+/// duplicate yet.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertBegin {}
+
+/// Arguments of [`InsertBegin`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertBeginArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub slots: View<'a, u32>,
+    /// written
+    pub half_edges: View<'a, u32>,
+    /// written
+    pub vertex_of: View<'a, u32>,
+    /// read
+    pub sites: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub vertices: u32,
+}
+
+impl Shader for InsertBegin {
+    type Args<'a> = InsertBeginArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_begin",
+        words: include_spirv!("../spv/insert_begin.spv"),
+        without_float64: None,
+        argument_bytes: 56,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "slots", offset: 8, access: Access::Read },
+            BufferArgument { name: "half_edges", offset: 16, access: Access::Write },
+            BufferArgument { name: "vertex_of", offset: 24, access: Access::Write },
+            BufferArgument { name: "sites", offset: 32, access: Access::Read },
+            BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "b3b32be764ae6301a4b1c6e07babd233cb0e747e9961542d04c279a498471d4e",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.slots);
+        encoder.buffer(16, args.half_edges);
+        encoder.buffer(24, args.vertex_of);
+        encoder.buffer(32, args.sites);
+        encoder.buffer(40, args.words);
+        encoder.value(48, args.limit);
+        encoder.value(52, args.vertices);
+    }
+}
+
+/// Insertion, 2 of 4 of a round: the second step of the claims. Of the points with the least score of a triangle, the one
+/// with the least priority gets it. Two words of 32 bits in two steps, since atomics on 64 bits are optional. For a point on
+/// an edge the second of its triangles takes the place of its score, which has served: links are about to change.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertClaim {}
+
+/// Arguments of [`InsertClaim`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertClaimArgs<'a> {
+    /// read
+    pub links: View<'a, u32>,
+    /// read
+    pub waiting: View<'a, [u32; 2]>,
+    /// read and written
+    pub places: View<'a, u32>,
+    /// read and written
+    pub claims: View<'a, u32>,
+    /// read
+    pub words: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+}
+
+impl Shader for InsertClaim {
+    type Args<'a> = InsertClaimArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_claim",
+        words: include_spirv!("../spv/insert_claim.spv"),
+        without_float64: None,
+        argument_bytes: 44,
+        buffers: &[
+            BufferArgument { name: "links", offset: 0, access: Access::Read },
+            BufferArgument { name: "waiting", offset: 8, access: Access::Read },
+            BufferArgument { name: "places", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "claims", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 32, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "efdab64374645c021117153262af3643f3415af5d8e0781f7956325981e16e79",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.links);
+        encoder.buffer(8, args.waiting);
+        encoder.buffer(16, args.places);
+        encoder.buffer(24, args.claims);
+        encoder.buffer(32, args.words);
+        encoder.value(40, args.limit);
+    }
+}
+
+/// Insertion, before the rounds, 2 of 5: where no triangle is finite, the lexicographically first and last vertex of the
+/// mesh or, if it is empty, of all points; of equal ones the lowest. Two passes: each workgroup finds its two, then one
+/// workgroup the two of all. The second pass lays the chain of both if the mesh is empty.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertEnds {}
+
+/// Arguments of [`InsertEnds`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertEndsArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub half_edges: View<'a, u32>,
+    /// read and written
+    pub ends: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub count: u32,
+    /// a value
+    pub last: u32,
+}
+
+impl Shader for InsertEnds {
+    type Args<'a> = InsertEndsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_ends",
+        words: include_spirv!("../spv/insert_ends.spv"),
+        without_float64: None,
+        argument_bytes: 56,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "half_edges", offset: 24, access: Access::Read },
+            BufferArgument { name: "ends", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "bcc2cddaba3cf97e6f300734411962007a2ce218b7bdcc623fd0caa05e060c16",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.half_edges);
+        encoder.buffer(32, args.ends);
+        encoder.buffer(40, args.words);
+        encoder.value(48, args.count);
+        encoder.value(52, args.last);
+    }
+}
+
+/// Insertion, 3 of 4 of a round: points that got all they claimed split it, the others go on the next list.
+///
+/// Links between the parts are new; outer edges keep the name of the other side that it had before, until `insert_relink`
+/// renews it. For each point `rounds` says in which round it was inserted.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertGraft {}
+
+/// Arguments of [`InsertGraft`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertGraftArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read and written
+    pub waiting: View<'a, [u32; 2]>,
+    /// read
+    pub freed: View<'a, [u32; 2]>,
+    /// read and written
+    pub places: View<'a, u32>,
+    /// read and written
+    pub claims: View<'a, u32>,
+    /// written
+    pub rounds: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+}
+
+impl Shader for InsertGraft {
+    type Args<'a> = InsertGraftArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_graft",
+        words: include_spirv!("../spv/insert_graft.spv"),
+        without_float64: None,
+        argument_bytes: 68,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "waiting", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "freed", offset: 24, access: Access::Read },
+            BufferArgument { name: "places", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "claims", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "rounds", offset: 48, access: Access::Write },
+            BufferArgument { name: "words", offset: 56, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &[
+            "GroupNonUniform",
+            "GroupNonUniformArithmetic",
+            "GroupNonUniformBallot",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "e6de87291c1a5d3c222f7b1ed86244adc64dc655228d25453a4e18a9679e0404",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.waiting);
+        encoder.buffer(24, args.freed);
+        encoder.buffer(32, args.places);
+        encoder.buffer(40, args.claims);
+        encoder.buffer(48, args.rounds);
+        encoder.buffer(56, args.words);
+        encoder.value(64, args.limit);
+    }
+}
+
+/// Insertion, before the rounds, 4 of 5: a chain of vertices and one point off its line become a triangulation. The ghost
+/// triangles on that side get the point as their corner in place of the ghost vertex, and at both ends of the chain a new
+/// ghost triangle goes in between.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertJoin {}
+
+/// Arguments of [`InsertJoin`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertJoinArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub slots: View<'a, u32>,
+    /// read
+    pub freed: View<'a, [u32; 2]>,
+    /// read and written
+    pub words: View<'a, u32>,
+}
+
+impl Shader for InsertJoin {
+    type Args<'a> = InsertJoinArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_join",
+        words: include_spirv!("../spv/insert_join.spv"),
+        without_float64: Some(include_spirv!("../spv/insert_join.integers.spv")),
+        argument_bytes: 48,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "slots", offset: 24, access: Access::Read },
+            BufferArgument { name: "freed", offset: 32, access: Access::Read },
+            BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "f80d3d9ef969c896aa299a4f66691ba10677b14d19e208385e72e726033bf46f",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.slots);
+        encoder.buffer(32, args.freed);
+        encoder.buffer(40, args.words);
+    }
+}
+
+/// Insertion, 1 of 4 of a round: finds the container of each point by a straight walk, and its score, which claims the
+/// container in the first of two steps. A point on a vertex is a duplicate, and done.
+///
+/// The walk is `reference::locate` and `reference::sector`, as one loop with one predicate in it. STATE says which line the
+/// point is held against next:
+///
+/// - TURN, CLOCKWISE, COUNTERCLOCKWISE: the edge from the start to the next vertex around it;
+/// - EXIT: the edge by which the segment leaves a triangle;
+/// - CORNER: the segment's start and the corner behind that edge;
+/// - RIGHT, LEFT: outside the hull, the ray from the center through the right or left end of a hull edge.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertLocate {}
+
+/// Arguments of [`InsertLocate`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertLocateArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub waiting: View<'a, [u32; 2]>,
+    /// read
+    pub freed: View<'a, [u32; 2]>,
+    /// written
+    pub places: View<'a, u32>,
+    /// read and written
+    pub claims: View<'a, u32>,
+    /// written
+    pub vertex_of: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub vertices: u32,
+}
+
+impl Shader for InsertLocate {
+    type Args<'a> = InsertLocateArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_locate",
+        words: include_spirv!("../spv/insert_locate.spv"),
+        without_float64: Some(include_spirv!("../spv/insert_locate.integers.spv")),
+        argument_bytes: 80,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "waiting", offset: 24, access: Access::Read },
+            BufferArgument { name: "freed", offset: 32, access: Access::Read },
+            BufferArgument { name: "places", offset: 40, access: Access::Write },
+            BufferArgument { name: "claims", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "vertex_of", offset: 56, access: Access::Write },
+            BufferArgument { name: "words", offset: 64, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "ffa455599523fa78a908128c09ee7e2a327558a65e0c01e133befa1330e17312",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.waiting);
+        encoder.buffer(32, args.freed);
+        encoder.buffer(40, args.places);
+        encoder.buffer(48, args.claims);
+        encoder.buffer(56, args.vertex_of);
+        encoder.buffer(64, args.words);
+        encoder.value(72, args.limit);
+        encoder.value(76, args.vertices);
+    }
+}
+
+/// Insertion, 4 of 4 of a round: the outer edges of what was split get their links, the edges around each new vertex go on
+/// the list for flips, those of new ghost triangles on the list for the hull, and claims are cleared. The last workgroup
+/// turns to the next round.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertRelink {}
+
+/// Arguments of [`InsertRelink`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertRelinkArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub waiting: View<'a, [u32; 2]>,
+    /// read
+    pub freed: View<'a, [u32; 2]>,
+    /// read
+    pub places: View<'a, u32>,
+    /// read and written
+    pub claims: View<'a, u32>,
+    /// read
+    pub rounds: View<'a, u32>,
+    /// written
+    pub edges: View<'a, u32>,
+    /// read and written
+    pub edge_count: View<'a, u32>,
+    /// written
+    pub hull_edges: View<'a, u32>,
+    /// read and written
+    pub hull_count: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub edge_limit: u32,
+    /// a value
+    pub hull_limit: u32,
+}
+
+impl Shader for InsertRelink {
+    type Args<'a> = InsertRelinkArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_relink",
+        words: include_spirv!("../spv/insert_relink.spv"),
+        without_float64: None,
+        argument_bytes: 108,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "waiting", offset: 16, access: Access::Read },
+            BufferArgument { name: "freed", offset: 24, access: Access::Read },
+            BufferArgument { name: "places", offset: 32, access: Access::Read },
+            BufferArgument { name: "claims", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "rounds", offset: 48, access: Access::Read },
+            BufferArgument { name: "edges", offset: 56, access: Access::Write },
+            BufferArgument { name: "edge_count", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "hull_edges", offset: 72, access: Access::Write },
+            BufferArgument { name: "hull_count", offset: 80, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 88, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &[
+            "GroupNonUniform",
+            "GroupNonUniformArithmetic",
+            "GroupNonUniformBallot",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "92396265ac1ffbc2ce13255f0d173b52dad66d968069f97055755a2eeadbe365",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.waiting);
+        encoder.buffer(24, args.freed);
+        encoder.buffer(32, args.places);
+        encoder.buffer(40, args.claims);
+        encoder.buffer(48, args.rounds);
+        encoder.buffer(56, args.edges);
+        encoder.buffer(64, args.edge_count);
+        encoder.buffer(72, args.hull_edges);
+        encoder.buffer(80, args.hull_count);
+        encoder.buffer(88, args.words);
+        encoder.value(96, args.limit);
+        encoder.value(100, args.edge_limit);
+        encoder.value(104, args.hull_limit);
+    }
+}
+
+/// Insertion, between the hull and the flips of a round. Flips follow once for each round of insertion: where there was none,
+/// the list is emptied. A hull that is not closed by now ends it all.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertTurn {}
+
+/// Arguments of [`InsertTurn`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertTurnArgs<'a> {
+    /// read
+    pub reflex: View<'a, u32>,
+    /// read and written
+    pub edge_count: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+}
+
+impl Shader for InsertTurn {
+    type Args<'a> = InsertTurnArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_turn",
+        words: include_spirv!("../spv/insert_turn.spv"),
+        without_float64: None,
+        argument_bytes: 24,
+        buffers: &[
+            BufferArgument { name: "reflex", offset: 0, access: Access::Read },
+            BufferArgument { name: "edge_count", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 16, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "6aa90c5a0e86cd57e334b4ca5d8a73dbc21e62069febb6e38a0eb15bf83e0ccb",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.reflex);
+        encoder.buffer(8, args.edge_count);
+        encoder.buffer(16, args.words);
+    }
+}
+
+/// Insertion, before the rounds, 5 of 5: where the walk to each point starts, and the words of the first round.
+#[derive(Debug, Clone, Copy)]
+pub enum InsertWait {}
+
+/// Arguments of [`InsertWait`].
+#[derive(Debug, Clone, Copy)]
+pub struct InsertWaitArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub half_edges: View<'a, u32>,
+    /// read
+    pub points: View<'a, u32>,
+    /// read
+    pub starts: View<'a, u32>,
+    /// read, may be left out
+    pub counter: Option<View<'a, u32>>,
+    /// read and written
+    pub waiting: View<'a, [u32; 2]>,
+    /// written
+    pub slots: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub vertices: u32,
+}
+
+impl Shader for InsertWait {
+    type Args<'a> = InsertWaitArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "insert_wait",
+        words: include_spirv!("../spv/insert_wait.spv"),
+        without_float64: None,
+        argument_bytes: 72,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "half_edges", offset: 8, access: Access::Read },
+            BufferArgument { name: "points", offset: 16, access: Access::Read },
+            BufferArgument { name: "starts", offset: 24, access: Access::Read },
+            BufferArgument { name: "counter", offset: 32, access: Access::Read },
+            BufferArgument { name: "waiting", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "slots", offset: 48, access: Access::Write },
+            BufferArgument { name: "words", offset: 56, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "11185bbf0798a3c7c81c72ab7b3c146b870cdc8eb95e92eb10d04ee17bcf05f6",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.half_edges);
+        encoder.buffer(16, args.points);
+        encoder.buffer(24, args.starts);
+        encoder.optional(32, args.counter);
+        encoder.buffer(40, args.waiting);
+        encoder.buffer(48, args.slots);
+        encoder.buffer(56, args.words);
+        encoder.value(64, args.limit);
+        encoder.value(68, args.vertices);
+    }
+}
+
 /// Pin: puts the sites that were pinned in the last round on their pixel centers, and tests the triangles around them.
 #[derive(Debug, Clone, Copy)]
 pub enum PinStars {}

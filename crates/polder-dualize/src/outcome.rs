@@ -58,7 +58,7 @@ impl Shifted {
 /// mesh.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Inserted {
-    /// The triangulation of all distinct points. No slot is free.
+    /// The triangulation of all distinct points. The slots of points equal to a vertex are free.
     pub mesh: GhostMesh,
     /// For each point the vertex that it is or equals.
     pub vertex_of: Vec<u32>,
@@ -97,8 +97,8 @@ struct Finite<'a>(&'a GhostMesh);
 
 impl fmt::Display for Finite<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let finite = self.0.finite().count();
-        write!(f, "{finite} triangles, {} ghosts", self.0.slots() - finite)
+        let ghosts = (0..self.0.slots()).filter(|&t| self.0.is_ghost(t)).count();
+        write!(f, "{} triangles, {ghosts} ghosts", self.0.finite().count())
     }
 }
 

@@ -98,8 +98,8 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
     );
 
     monitor.step("insert", 3, STAGES)?;
-    let (missing, starts) = dualize::points_to_insert(&voronoi.diagram, sites, &shifted);
-    let inserted = dualize::insert(shifted.mesh.clone(), &positions, &missing, &starts)?;
+    let new = dualize::points_to_insert(&voronoi.diagram, sites, &shifted);
+    let inserted = dualize::insert(shifted.mesh.clone(), &positions, &new)?;
     watch.stage(
         "insert",
         [

@@ -1,1 +1,401 @@
 //! Stage 4 on the device.
+//!
+//! Before the rounds each vertex gets some half-edge that leaves it, for walks to start from, and a mesh without finite
+//! triangles gets some: a chain is joined by the point off its line that has the least priority, in place; an empty mesh is
+//! given the chain of the first and last of all points before. If all points lie on one line, the stage says so and leaves
+//! them to the host. A round is four kernels here,
+//! then ghost flips and one round of flips, which `polder-flip` records:
+//!
+//! 1. *Locate.* One invocation a point walks to its container, scores the point and claims by score, by atomics on [`u32`]
+//!    alone.
+//! 2. *Claim* by priority, among those with the least score.
+//! 3. *Graft.* Who got all it claimed writes its triangles; the others go on the next list. Slots are known beforehand, so
+//!    nothing is counted or scanned, and lists may be in any order.
+//! 4. *Relink.* Outer edges of what was split learn the new names of their other sides. The last workgroup to end turns to
+//!    the next round.
+//!
+//! A round with nothing to do is a row of empty dispatches. The host looks after as many rounds as most inputs need.
+
+use crate::DualizeError;
+use crate::kernels::*;
+use polder_flip::FlipReport;
+use polder_flip::gpu::{self as flips, Arithmetic, EdgeList, Mesh, Tally, TallyRead};
+use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, ReadBack, Recording, RunReport, View, groups_for};
+
+const NONE: u32 = u32::MAX;
+const WORKGROUP: u32 = 256;
+const WORDS: usize = 40;
+/// Words from there on that begin as [`NONE`].
+const UNSET: usize = 8;
+/// Most workgroups that look for the ends of a chain.
+const END_GROUPS: u32 = 1024;
+/// Rounds before the host looks, and after that.
+const FIRST: u32 = 5;
+const BATCH: u32 = 8;
+
+/// Places of words that the host knows, as in `insert.glsl`.
+#[derive(Clone, Copy)]
+enum Word {
+    Waiting = 0,
+    Round = 3,
+    Groups = 4,
+    Inserted = 16,
+    Duplicates = 17,
+    Lost = 18,
+    OpenHull = 19,
+    CenterSlot = 28,
+}
+
+/// What is to be inserted into a mesh, as [`ToInsert`](crate::reference::ToInsert), but for the slots.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// The points.
+    pub points: View<'a, u32>,
+    /// For each a vertex from which the search for it starts; [`NONE`](polder_mesh::NONE) for anywhere.
+    pub starts: View<'a, u32>,
+    /// How many there are: all of the view without.
+    pub count: Option<View<'a, u32>>,
+    /// How many sites there were: the mesh has two slots for each, but two.
+    pub sites: View<'a, u32>,
+    /// The two slots that each site left free if it was taken out. A point that was no site has twice its number, less two,
+    /// and the one after.
+    pub freed: View<'a, [u32; 2]>,
+}
+
+/// What the stage holds beside the mesh: at most 48 bytes a point and 12 a slot, and 4 words a slot for the list of edges.
+#[derive(Debug)]
+pub struct Buffers {
+    waiting: Buffer<[u32; 2]>,
+    places: Buffer<u32>,
+    claims: Buffer<u32>,
+    /// By vertex: a half-edge out of it, then the round in which it was inserted.
+    rounds: Buffer<u32>,
+    vertex_of: Buffer<u32>,
+    words: Buffer<u32>,
+    ends: Buffer<u32>,
+    edges: EdgeList,
+    hull_edges: EdgeList,
+    hull: Tally,
+    flips: Tally,
+}
+
+/// Room for the edges of a round: three or four of each winner, which brings along two slots, and four of each flip, which
+/// takes two triangles.
+fn edges_of(slots: usize) -> usize {
+    3 * slots
+}
+
+/// Six of each winner outside, of which there are at most as many as hull edges before.
+fn hull_edges_of(slots: usize) -> usize {
+    3 * slots.div_ceil(2)
+}
+
+impl Buffers {
+    /// For each point the vertex that it is or equals.
+    pub fn vertex_of(&self) -> View<'_, u32> {
+        self.vertex_of.view()
+    }
+
+    /// The edges around what the last flips changed.
+    pub fn edges(&self) -> &EdgeList {
+        &self.edges
+    }
+
+    fn word(&self, word: Word, count: usize) -> Result<View<'_, u32>, Error> {
+        self.words.slice(word as usize..word as usize + count)
+    }
+}
+
+/// What the stage did.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Rounds of insertion.
+    pub rounds: u64,
+    /// Points that the rounds inserted.
+    pub inserted: u64,
+    /// Points that were found equal to a vertex.
+    pub duplicates: u64,
+    /// Whether all points lie on one line, or are equal. Then nothing was inserted, and neither the mesh nor the vertices of
+    /// points mean anything: what remains is to sort, as [`reference::insert`](crate::reference::insert) does.
+    pub on_a_line: bool,
+    /// Ghost flips.
+    pub hull: FlipReport,
+    /// The flip rounds between insertion rounds.
+    pub flips: FlipReport,
+}
+
+/// Where [`Counts`] will be found in the report of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Read {
+    words: ReadBack,
+    hull: TallyRead,
+    flips: TallyRead,
+}
+
+impl Read {
+    /// After the run.
+    ///
+    /// # Errors
+    ///
+    /// [`DualizeError::WalkLost`] if the mesh was no triangulation; [`DualizeError::BoundExceeded`] if a hull was not closed
+    /// in as many rounds of flips as one round of insertion may take.
+    pub fn result(&self, report: &RunReport) -> Result<Counts, DualizeError> {
+        let words = report.words(self.words);
+        let word = |at: Word| words.get(at as usize).copied().unwrap_or(0);
+        if word(Word::Lost) != NONE {
+            return Err(DualizeError::WalkLost { point: word(Word::Lost), steps: 0 });
+        }
+        if word(Word::OpenHull) != 0 {
+            let bound = u64::from(word(Word::Round));
+            return Err(DualizeError::BoundExceeded { stage: "insert, close hull", bound });
+        }
+        Ok(Counts {
+            rounds: u64::from(word(Word::Round).saturating_sub(1)),
+            inserted: word(Word::Inserted).into(),
+            duplicates: word(Word::Duplicates).into(),
+            on_a_line: word(Word::CenterSlot) == NONE,
+            hull: self.hull.report(report),
+            flips: self.flips.report(report),
+        })
+    }
+}
+
+/// The kernels of the stage on one device.
+#[derive(Debug)]
+pub struct Stage {
+    device: Device,
+    begin: Kernel<InsertBegin>,
+    ends: Kernel<InsertEnds>,
+    apex: Kernel<InsertApex>,
+    join: Kernel<InsertJoin>,
+    wait: Kernel<InsertWait>,
+    locate: Kernel<InsertLocate>,
+    claim: Kernel<InsertClaim>,
+    graft: Kernel<InsertGraft>,
+    relink: Kernel<InsertRelink>,
+    turn: Kernel<InsertTurn>,
+}
+
+impl Stage {
+    /// Compiles the kernels.
+    ///
+    /// # Errors
+    ///
+    /// Those of the device.
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        Self::with_arithmetic(device, Arithmetic::of(device)?)
+    }
+
+    /// With a given arithmetic: for tests, and where the device was asked before.
+    ///
+    /// # Errors
+    ///
+    /// Those of the device.
+    pub fn with_arithmetic(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
+        let workgroup = [("WORKGROUP", WORKGROUP)];
+        Ok(Self {
+            device: device.clone(),
+            begin: Kernel::new(device, &workgroup)?,
+            ends: Kernel::new(device, &workgroup)?,
+            apex: arithmetic.kernel(device, &workgroup)?,
+            join: arithmetic.kernel(device, &workgroup)?,
+            wait: Kernel::new(device, &workgroup)?,
+            locate: arithmetic.kernel(device, &workgroup)?,
+            claim: Kernel::new(device, &workgroup)?,
+            graft: Kernel::new(device, &workgroup)?,
+            relink: Kernel::new(device, &workgroup)?,
+            turn: Kernel::new(device, &workgroup)?,
+        })
+    }
+
+    /// What [`Stage::buffers`] will hold.
+    pub fn estimate(points: usize, slots: usize) -> Estimate {
+        Estimate::new()
+            .buffer::<[u32; 2]>("points that wait", 2 * points)
+            .buffer::<[u32; 2]>("places", points)
+            .buffer::<[u32; 3]>("claims of points", slots)
+            .buffer::<u32>("rounds of points", points)
+            .buffer::<u32>("vertices of points", points)
+            .buffer::<u32>("insert words", WORDS)
+            .buffer::<u32>("ends of a chain", 2 * END_GROUPS as usize)
+            .and(EdgeList::estimate(edges_of(slots)))
+            .and(EdgeList::estimate(hull_edges_of(slots)))
+    }
+
+    /// Memory for so many points, and meshes of up to so many slots.
+    ///
+    /// # Errors
+    ///
+    /// If the memory cannot be had: then before any of it is allocated.
+    pub fn buffers(&self, points: usize, slots: usize) -> Result<Buffers, Error> {
+        let device = &self.device;
+        Self::estimate(points, slots).check(device)?;
+        Ok(Buffers {
+            waiting: Buffer::new(device, "points that wait", 2 * points)?,
+            places: Buffer::new(device, "places", 2 * points)?,
+            claims: Buffer::new(device, "claims of points", 3 * slots)?,
+            rounds: Buffer::new(device, "rounds of points", points)?,
+            vertex_of: Buffer::new(device, "vertices of points", points)?,
+            words: Buffer::new(device, "insert words", WORDS)?,
+            ends: Buffer::new(device, "ends of a chain", 2 * END_GROUPS as usize)?,
+            edges: EdgeList::new(device, edges_of(slots))?,
+            hull_edges: EdgeList::new(device, hull_edges_of(slots))?,
+            hull: Tally::new(device)?,
+            flips: Tally::new(device)?,
+        })
+    }
+
+    /// Inserts points into a triangulation, as [`reference::insert`](crate::reference::insert) does. Each position of the
+    /// mesh must be a vertex or among the points.
+    ///
+    /// # Errors
+    ///
+    /// If the buffers are for another number of points or fewer slots.
+    pub fn record(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        flips: (&flips::Stage, &flips::Buffers),
+        buffers: &Buffers,
+        input: Input<'_>,
+    ) -> Result<Read, Error> {
+        let (points, slots) = (buffers.vertex_of.len(), buffers.claims.len() / 3);
+        if mesh.vertices() != points || mesh.capacity() > slots || input.points.len().max(input.starts.len()) > points {
+            let (vertices, capacity) = (mesh.vertices(), mesh.capacity());
+            let why = format!("{vertices} vertices and {capacity} slots; buffers for {points} and {slots}");
+            return Err(Error::Recording { command: "insert", why });
+        }
+        self.record_begin(recording, mesh, buffers, input)?;
+        flips.0.record_start(recording, flips.1);
+        buffers.edges.record_clear(recording);
+        buffers.hull_edges.record_clear(recording);
+        buffers.hull.record_clear(recording);
+        buffers.flips.record_clear(recording);
+        let waiting = buffers.word(Word::Waiting, 1)?;
+        // Each round inserts a point.
+        let bound = (points as u32).saturating_add(1);
+        let mut failed = None;
+        recording.repeat_ahead("insert", waiting, bound, FIRST, BATCH, |round| {
+            failed = self.record_round(round, mesh, flips, buffers, input).err();
+        });
+        failed.map_or(Ok(()), Err)?;
+        Ok(Read {
+            words: recording.read(buffers.words.view()),
+            hull: buffers.hull.read(recording),
+            flips: buffers.flips.read(recording),
+        })
+    }
+
+    fn record_begin(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        input: Input<'_>,
+    ) -> Result<(), Error> {
+        let (limit, vertices) = (mesh.capacity() as u32, mesh.vertices() as u32);
+        let (words, half_edges) = (buffers.words.view(), buffers.rounds.view());
+        recording.fill(buffers.claims.view(), NONE);
+        recording.fill(half_edges, NONE);
+        recording.fill(words, 0);
+        recording.fill(buffers.word(Word::CenterSlot, UNSET)?, NONE);
+        let arguments = InsertBeginArgs {
+            triangles: mesh.corners(),
+            slots: mesh.slots(),
+            half_edges,
+            vertex_of: buffers.vertex_of.view(),
+            sites: input.sites,
+            words,
+            limit,
+            vertices,
+        };
+        recording.dispatch(&self.begin, groups_for(mesh.capacity().max(mesh.vertices()), WORKGROUP), &arguments);
+        self.record_bootstrap(recording, mesh, buffers, input);
+        let points = input.points.len().min(input.starts.len());
+        let arguments = InsertWaitArgs {
+            triangles: mesh.corners(),
+            half_edges,
+            points: input.points,
+            starts: input.starts,
+            counter: input.count,
+            waiting: buffers.waiting.view(),
+            slots: mesh.slots(),
+            words,
+            limit: points as u32,
+            vertices,
+        };
+        recording.dispatch(&self.wait, groups_for(points.max(1), WORKGROUP), &arguments);
+        Ok(())
+    }
+
+    /// A start where no triangle is finite; else these kernels do nothing.
+    fn record_bootstrap(&self, recording: &mut Recording, mesh: &Mesh, buffers: &Buffers, input: Input<'_>) {
+        let (triangles, links, positions) = (mesh.corners(), mesh.twins(), mesh.positions().cast());
+        let (words, count) = (buffers.words.view(), mesh.vertices() as u32);
+        let groups = count.div_ceil(WORKGROUP).clamp(1, END_GROUPS);
+        let (half_edges, ends) = (buffers.rounds.view(), buffers.ends.view());
+        for (groups, count, last) in [(groups, count, 0), (1, 2 * groups, 1)] {
+            let arguments = InsertEndsArgs { triangles, links, positions, half_edges, ends, words, count, last };
+            recording.dispatch(&self.ends, [groups, 1, 1], &arguments);
+        }
+        recording.dispatch(&self.apex, [groups, 1, 1], &InsertApexArgs { positions, words, count });
+        let arguments = InsertJoinArgs { triangles, links, positions, slots: mesh.slots(), freed: input.freed, words };
+        recording.dispatch(&self.join, groups_for(mesh.capacity(), WORKGROUP), &arguments);
+    }
+
+    fn record_round(
+        &self,
+        round: &mut Recording,
+        mesh: &Mesh,
+        flips: (&flips::Stage, &flips::Buffers),
+        buffers: &Buffers,
+        input: Input<'_>,
+    ) -> Result<(), Error> {
+        let (triangles, links) = (mesh.corners(), mesh.twins());
+        let (waiting, places, claims) = (buffers.waiting.view(), buffers.places.view(), buffers.claims.view());
+        let (words, hull) = (buffers.words.view(), &buffers.hull_edges);
+        let groups = buffers.word(Word::Groups, 3)?;
+        let (limit, freed) = (mesh.vertices() as u32, input.freed);
+        let arguments = InsertLocateArgs {
+            triangles,
+            links,
+            positions: mesh.positions().cast(),
+            waiting,
+            freed,
+            places,
+            claims,
+            vertex_of: buffers.vertex_of.view(),
+            words,
+            limit,
+            vertices: mesh.vertices() as u32,
+        };
+        round.dispatch_indirect(&self.locate, groups, &arguments);
+        let arguments = InsertClaimArgs { links, waiting, places, claims, words, limit };
+        round.dispatch_indirect(&self.claim, groups, &arguments);
+        let rounds = buffers.rounds.view();
+        let arguments = InsertGraftArgs { triangles, links, waiting, freed, places, claims, rounds, words, limit };
+        round.dispatch_indirect(&self.graft, groups, &arguments);
+        let arguments = InsertRelinkArgs {
+            triangles,
+            links,
+            waiting,
+            freed,
+            places,
+            claims,
+            rounds,
+            edges: buffers.edges.edges(),
+            edge_count: buffers.edges.count(),
+            hull_edges: hull.edges(),
+            hull_count: hull.count(),
+            words,
+            limit,
+            edge_limit: buffers.edges.limit(),
+            hull_limit: hull.limit(),
+        };
+        round.dispatch_indirect(&self.relink, groups, &arguments);
+        flips.0.record_close_hull(round, mesh, flips.1, Some(hull), Some(&buffers.edges), &buffers.hull)?;
+        let arguments = InsertTurnArgs { reflex: flips.1.pending()?, edge_count: buffers.edges.count(), words };
+        round.dispatch(&self.turn, [1, 1, 1], &arguments);
+        flips.0.record_round(round, mesh, flips.1, &buffers.edges, &buffers.flips)
+    }
+}

@@ -4,81 +4,65 @@
 //! out all sites but two, or all. So the mesh that insertion is given may be a chain, or empty:
 //!
 //! 1. Empty: the lexicographically first and last of all points become a chain of two. If they are equal, all points are
-//!    one, and there is nothing to triangulate.
-//! 2. A chain: of the points off its line, the one with the least priority joins it; every edge of the chain makes a
-//!    triangle with it. It sees them all, since they lie on one line.
+//!    one, and there is nothing to triangulate. Of `n` points all but one have slots of their own. The chain takes those
+//!    of one of its two points; the other's go to the point without.
+//! 2. A chain: of the points off its line, the one with the least priority joins it. It sees every edge of the chain from
+//!    the same side: the ghost triangles on that side get it as their corner in place of the ghost vertex, and at both
+//!    ends of the chain a new ghost triangle goes in between.
 //! 3. If no point is off the line, all are on it: their chain, in lexicographic order, is the result.
 //!
 //! Each step is a minimum over all points, step 3 a sort.
 
 use super::certify::before;
+use super::kernels::insert::{insert_apex, insert_ends, insert_join};
 use glam::DVec2;
 use polder_flip::priority;
 use polder_flip::reference::chain;
-use polder_mesh::{DELETED, GHOST, GhostMesh};
-use polder_predicates::{Sign, orient2d};
+use polder_mesh::{DELETED, GHOST, GhostMesh, NONE};
 
 /// What there is to start from.
 pub(super) enum Start {
-    /// A mesh with a finite triangle, and the points that became vertices of it here.
+    /// A mesh with a finite triangle.
     Mesh(GhostMesh),
     /// All points lie on one line, or are equal: the finished mesh, and the vertex of each point.
     Line(GhostMesh, Vec<u32>),
 }
 
-/// Turns a chain or the empty mesh into a start; `positions` must not be empty.
-pub(super) fn bootstrap(mesh: GhostMesh, positions: &[DVec2]) -> Start {
-    let at = |v: u32| positions[v as usize];
-    let mut vertices: Vec<u32> = mesh.triangles.iter().flatten().copied().filter(|&v| v < DELETED).collect();
-    sort(&mut vertices, positions);
-    vertices.dedup();
-    let all = || 0..positions.len() as u32;
-    if vertices.len() < 2 {
-        let least = |u: u32, v: u32| if before(at(v), at(u)) { v } else { u };
-        let most = |u: u32, v: u32| if before(at(u), at(v)) { v } else { u };
-        vertices = vec![all().fold(0, least), all().fold(0, most)];
-    }
-    let [a, b] = [vertices[0], vertices[vertices.len() - 1]];
-    if at(a) == at(b) {
+/// Turns a chain or the empty mesh into a start; `positions` must not be empty. `slots` are those of each point, free.
+pub(super) fn bootstrap(mut mesh: GhostMesh, positions: &[DVec2], slots: &mut [[u32; 2]]) -> Start {
+    let vertices: Vec<u32> = mesh.triangles.iter().flatten().copied().filter(|&v| v < DELETED).collect();
+    let empty = vertices.is_empty();
+    let [a, b] = if empty {
+        insert_ends(positions, 0..positions.len() as u32)
+    } else {
+        insert_ends(positions, vertices.into_iter())
+    };
+    if positions[a as usize] == positions[b as usize] {
         return Start::Line(GhostMesh::default(), vec![a; positions.len()]);
     }
-    let side = |v: u32| orient2d(at(a), at(b), at(v));
-    match all().filter(|&v| side(v) != Sign::Zero).min_by_key(|&v| priority(v)) {
-        Some(apex) => {
-            if side(apex) == Sign::Negative {
-                vertices.reverse();
-            }
-            Start::Mesh(fan(&vertices, apex))
+    let least = insert_apex(positions, [a, b]);
+    let Some(apex) = (0..positions.len() as u32).find(|&v| priority(v) == least && least != NONE) else {
+        return line(positions);
+    };
+    if empty {
+        let keeps = if slots[a as usize][0] == NONE { b } else { a };
+        let gives = a + b - keeps;
+        lay(&mut mesh, [a, b], slots[keeps as usize]);
+        if let Some(without) = slots.iter().position(|pair| pair[0] == NONE) {
+            slots[without] = slots[gives as usize];
         }
-        None => line(positions),
     }
+    insert_join(&mut mesh, positions, apex, slots[apex as usize]);
+    Start::Mesh(mesh)
 }
 
-/// Step 2: the triangulation of a chain and a vertex to the left of it.
-fn fan(chain: &[u32], apex: u32) -> GhostMesh {
-    let edges = chain.len() as u32 - 1;
-    let mut mesh = GhostMesh::with_slots(2 * edges as usize + 2);
-    // Finite triangles first, then the ghost triangles of the chain's edges, then those of the two edges to the apex.
-    let (left, right) = (2 * edges, 2 * edges + 1);
-    for i in 0..edges {
-        let (u, w) = (chain[i as usize], chain[i as usize + 1]);
-        mesh.triangles[i as usize] = [u, w, apex];
-        mesh.triangles[(edges + i) as usize] = [w, u, GHOST];
-        mesh.link(3 * i + 2, 3 * (edges + i) + 2);
-        if i > 0 {
-            mesh.link(3 * i + 1, 3 * (i - 1));
-            mesh.link(3 * (edges + i), 3 * (edges + i - 1) + 1);
-        }
-    }
-    let (first, last) = (chain[0], chain[edges as usize]);
-    mesh.triangles[left as usize] = [first, apex, GHOST];
-    mesh.triangles[right as usize] = [apex, last, GHOST];
-    mesh.link(3 * left + 2, 1);
-    mesh.link(3 * right + 2, 3 * (edges - 1));
-    mesh.link(3 * left, 3 * right + 1);
-    mesh.link(3 * left + 1, 3 * edges);
-    mesh.link(3 * right, 3 * (2 * edges - 1) + 1);
-    mesh
+/// Step 1: the chain of two vertices, in two free slots.
+fn lay(mesh: &mut GhostMesh, [a, b]: [u32; 2], [s, t]: [u32; 2]) {
+    mesh.triangles[s as usize] = [b, a, GHOST];
+    mesh.triangles[t as usize] = [a, b, GHOST];
+    mesh.link(3 * s + 2, 3 * t + 2);
+    mesh.link(3 * s, 3 * t + 1);
+    mesh.link(3 * s + 1, 3 * t);
 }
 
 /// Step 3.

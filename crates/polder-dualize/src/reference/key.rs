@@ -1,64 +1,44 @@
 //! Who goes first where several points want the same container.
 //!
 //! One 64-bit number a point, the least wins: first a bit that is clear for a point on an edge, then 31 bits that say
-//! how well the point suits, then 32 bits of [`priority`], so that two points never tie.
+//! how well the point suits, the *score*, then 32 bits of [`priority`](polder_flip::priority), so
+//! that two points never tie.
 //!
-//! In a triangle or on an edge the point nearest to the center suits best, since it splits it most evenly. Outside the
-//! hull it is the one highest above the hull edge: most of the others are inside afterwards, where the nearest would
-//! leave them outside, in sectors hardly narrower; and of points along an arc the highest is in the middle, where the
-//! one farthest from the edge's center is at an end.
+//! - In a triangle all points suit alike, so that chance decides. Whatever the points look like, each part of the split
+//!   triangle is then expected to get a fraction of them. Every rule that looks at the triangle has its family of
+//!   points that it serves badly, by taking them from the border of the crowd inwards: nearest to the center needs 538
+//!   rounds for 200,000 points on four circles, and 57 for points that crowd toward one of them, where chance needs 20
+//!   and 24. What chance costs is two rounds more for a cluster, and 2.6 flips a point in place of 1.8.
+//! - On an edge the point nearest to the middle goes first: points on an edge are often evenly spread.
+//! - Outside the hull it is the one highest above the hull edge: most of the others are inside afterwards, where the
+//!   nearest would leave them outside, in sectors hardly narrower; and of points along an arc the highest is in the
+//!   middle, where the one farthest from the edge's middle is at an end.
 //!
 //! This steers, so it is integer arithmetic. Coordinates are cut off to multiples of a power of two, 2⁻⁵⁸ times the
-//! power of two above the largest of them. The sum of |dx| and |dy| from the center is then exact, times the number of
-//! corners (three of a triangle, two of an edge), and so is the height, times the edge's length: twice the area of the
-//! triangle. They are kept as an exponent and a fraction, cut off after 31 bits in all: such numbers are ordered as what
-//! they stand for, whatever their powers of two were.
+//! power of two above the largest of them. Twice the sum of |dx| and |dy| from the middle is then exact, and so is the
+//! height, times the edge's length: twice the area of the triangle. They are kept as an exponent and a fraction, cut off
+//! after 31 bits in all: such numbers are ordered as what they stand for, whatever their powers of two were.
 
 use glam::DVec2;
-use polder_flip::priority;
 
-/// All of a point's key but its priority.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) struct Key(u32);
+/// The score of every point strictly inside a triangle; of points on an edge it is less, outside the hull not less.
+pub(crate) const INSIDE: u32 = 1 << 31;
 
-impl Key {
-    /// Of a point strictly between the ends of an edge.
-    pub(super) fn on_edge(p: DVec2, ends: [DVec2; 2]) -> Self {
-        Self(distance(p, &ends))
-    }
-
-    /// Of a point strictly inside a triangle: the nearest first.
-    pub(super) fn inside(p: DVec2, corners: [DVec2; 3]) -> Self {
-        Self(NOT_ON_EDGE | distance(p, &corners))
-    }
-
-    /// Of a point in the sector of a hull edge: the highest above the edge first.
-    pub(super) fn outside(p: DVec2, ends: [DVec2; 2]) -> Self {
-        Self(NOT_ON_EDGE | (NOT_ON_EDGE - 1 - area(p, ends)))
-    }
-
-    /// The whole key.
-    pub(super) fn of(self, point: u32) -> u64 {
-        u64::from(self.0) << 32 | u64::from(priority(point))
-    }
-}
-
-const NOT_ON_EDGE: u32 = 1 << 31;
-
-/// The distance from `p` to the center of the corners, times their number, as exponent and fraction.
-fn distance(p: DVec2, corners: &[DVec2]) -> u32 {
-    let top = largest_top(p, corners);
-    let n = corners.len() as i64;
-    let along = |k: usize| {
-        let sum: i64 = corners.iter().map(|q| fixed(q[k], top)).sum();
-        (n * fixed(p[k], top) - sum).unsigned_abs()
-    };
+/// The score of a point strictly between the ends of an edge.
+pub(crate) fn on_edge(p: DVec2, [u, w]: [DVec2; 2]) -> u32 {
+    let top = largest_top([p, u, w]);
+    let along = |k: usize| (2 * fixed(p[k], top) - fixed(u[k], top) - fixed(w[k], top)).unsigned_abs();
     float(u128::from(along(0) + along(1)), top + 1200, 19)
 }
 
+/// The score of a point in the sector of a hull edge.
+pub(crate) fn outside(p: DVec2, [u, w]: [DVec2; 2]) -> u32 {
+    u32::MAX - area(p, u, w)
+}
+
 /// Twice the area of the triangle between an edge and a point outside of it, zero if cut-off coordinates turn it round.
-fn area(p: DVec2, [u, w]: [DVec2; 2]) -> u32 {
-    let top = largest_top(p, &[u, w]);
+fn area(p: DVec2, u: DVec2, w: DVec2) -> u32 {
+    let top = largest_top([p, u, w]);
     let to = |q: DVec2, k: usize| i128::from(fixed(q[k], top) - fixed(u[k], top));
     // Positive where the point lies right of the edge, as it does outside.
     let area = to(w, 1) * to(p, 0) - to(w, 0) * to(p, 1);
@@ -76,9 +56,8 @@ fn float(x: u128, base: i32, fraction_bits: u32) -> u32 {
     ((base + bits as i32) as u32) << fraction_bits | fraction as u32
 }
 
-fn largest_top(p: DVec2, corners: &[DVec2]) -> i32 {
-    let all = corners.iter().chain(std::iter::once(&p)).flat_map(|q| q.to_array());
-    all.map(top).max().unwrap_or(0)
+fn largest_top(points: [DVec2; 3]) -> i32 {
+    points.into_iter().flat_map(|q| q.to_array()).map(top).max().unwrap_or(0)
 }
 
 /// The cut-off place is this many bits below the top.
@@ -123,8 +102,7 @@ mod tests {
 
     #[test]
     fn distances_are_ordered_across_scales() {
-        let corners = [DVec2::new(0.0, 0.0), DVec2::new(3.0, 0.0), DVec2::new(0.0, 3.0)];
-        let at = |d: f64| distance(DVec2::new(1.0 + d, 1.0), &corners);
+        let at = |d: f64| on_edge(DVec2::new(1.0 + d, 1.0), [DVec2::ZERO, DVec2::splat(2.0)]);
         assert_eq!(at(0.0), 0);
         let steps: Vec<u32> = (-40..12).map(|e| at(2f64.powi(e))).collect();
         assert!(steps.windows(2).all(|pair| pair[0] < pair[1]), "{steps:?}");
@@ -132,24 +110,27 @@ mod tests {
     }
 
     #[test]
-    fn keys_put_edges_first_and_never_tie() {
-        let [a, b, c] = [DVec2::ZERO, DVec2::X, DVec2::Y];
-        let near = Key::inside(DVec2::splat(0.3), [a, b, c]);
-        assert!(Key::on_edge(DVec2::new(0.75, 0.25), [b, c]) < near);
-        assert!(Key::outside(DVec2::new(9.0, 9.0), [b, c]) < Key::outside(DVec2::new(1.0, 1.0), [b, c]));
-        let mut keys: Vec<u64> = (0..100).map(|i| near.of(i)).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        assert_eq!(keys.len(), 100);
+    fn heights_are_ordered_across_scales() {
+        let at = |height: f64| outside(DVec2::new(0.25, height), [DVec2::X, DVec2::ZERO]);
+        let steps: Vec<u32> = (-50..50).map(|e| at(2f64.powi(e))).collect();
+        assert!(steps.windows(2).all(|pair| pair[0] > pair[1]), "{steps:?}");
+        assert!(steps.iter().all(|&score| score > INSIDE));
+    }
+
+    #[test]
+    fn edges_go_before_what_is_inside() {
+        let [b, c] = [DVec2::X, DVec2::Y];
+        assert!(on_edge(DVec2::new(0.75, 0.25), [b, c]) < INSIDE);
+        assert!(outside(DVec2::new(9.0, 9.0), [b, c]) < outside(DVec2::new(1.0, 1.0), [b, c]));
     }
 
     #[test]
     fn extreme_magnitudes_do_not_overflow() {
         let m = f64::MAX;
-        let corners = [DVec2::new(m, m), DVec2::new(m, -m), DVec2::new(-m, m)];
-        let one = distance(DVec2::new(-m, -m), &corners);
-        assert!(one < 1 << 31);
+        let one = on_edge(DVec2::new(-m, -m), [DVec2::new(m, m), DVec2::new(m, -m)]);
+        assert!(one < INSIDE);
         let tiny = DVec2::splat(f64::from_bits(1));
-        assert!(distance(tiny, &[DVec2::ZERO, -tiny, tiny]) < one);
+        assert!(on_edge(tiny, [DVec2::ZERO, -tiny]) < one);
+        assert!(outside(DVec2::new(m, m), [DVec2::new(m, -m), DVec2::new(-m, m)]) >= INSIDE);
     }
 }

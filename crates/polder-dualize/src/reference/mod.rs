@@ -7,7 +7,6 @@ mod certify;
 mod corners;
 mod dualize;
 pub(crate) mod elect;
-mod graft;
 mod insert;
 pub mod kernels;
 mod key;
@@ -22,6 +21,6 @@ mod whole;
 
 pub use certify::certify;
 pub use dualize::{dual, dualize};
-pub use insert::insert;
+pub use insert::{ToInsert, insert};
 pub use shift::shift;
 pub use whole::{Phases, points_to_insert, triangulate};

@@ -1,6 +1,6 @@
 //! Stages 1 to 4 in a row.
 
-use super::{dual, insert, shift};
+use super::{ToInsert, dual, insert, shift};
 use crate::{DualizeError, Dualized, Inserted, Shifted};
 use glam::DVec2;
 use polder_mesh::NONE;
@@ -41,19 +41,30 @@ pub fn triangulate(points: &[DVec2], options: &Options) -> Result<Phases, Dualiz
     let positions: Vec<DVec2> = voronoi.sites.order.iter().map(|&i| points[i as usize]).collect();
     let dualized = dual(&voronoi.diagram, &voronoi.sites)?;
     let shifted = shift(dualized.mesh.clone(), &centers(&voronoi), &positions)?;
-    let (missing, starts) = points_to_insert(&voronoi.diagram, &voronoi.sites, &shifted);
-    let inserted = insert(shifted.mesh.clone(), &positions, &missing, &starts)?;
+    let new = points_to_insert(&voronoi.diagram, &voronoi.sites, &shifted);
+    let inserted = insert(shifted.mesh.clone(), &positions, &new)?;
     Ok(Phases { voronoi, dualized, shifted, inserted })
 }
 
-/// The points that stage 4 must insert, and a vertex close to each: the sites taken out with their heirs, then the
-/// missing points, each with the site that owns its pixel, or that one's heir.
-pub fn points_to_insert(diagram: &Diagram, sites: &Sites, shifted: &Shifted) -> (Vec<u32>, Vec<u32>) {
-    let missing = (sites.count..sites.order.len()).map(|i| {
+/// The points that stage 4 must insert, with a vertex close to each and the slots of each: the sites taken out with their
+/// heirs and the slots that they left, then the missing points, each with the site that owns its pixel, or that one's
+/// heir. The dualized mesh of `s` sites has `2 s - 2` slots, so that missing point `i` has `2 i - 2` and `2 i - 1`; from an
+/// empty mesh all points have these, but for the first one.
+pub fn points_to_insert(diagram: &Diagram, sites: &Sites, shifted: &Shifted) -> ToInsert {
+    let own = |i: u32| if i == 0 { [NONE; 2] } else { [2 * i - 2, 2 * i - 1] };
+    let mut new = ToInsert::default();
+    for (site, heir) in shifted.taken_out() {
+        new.points.push(site);
+        new.starts.push(heir);
+        new.slots.push(if shifted.mesh.slots() == 0 { own(site) } else { shifted.freed[site as usize] });
+    }
+    for i in sites.count..sites.order.len() {
         let owner = diagram.color(sites.pixels[i]) as usize;
-        (i as u32, shifted.heirs.get(owner).copied().unwrap_or(NONE))
-    });
-    shifted.taken_out().chain(missing).unzip()
+        new.points.push(i as u32);
+        new.starts.push(shifted.heirs.get(owner).copied().unwrap_or(NONE));
+        new.slots.push(own(i as u32));
+    }
+    new
 }
 
 fn centers(voronoi: &polder_voronoi::reference::Output) -> Vec<DVec2> {

@@ -80,7 +80,10 @@ pub(crate) fn phases_with(points: &[DVec2], options: &Options) -> Phases {
     shifted.check().unwrap();
     shifted.compact();
     check_sphere(&shifted, sites - phases.shifted.taken_out().count());
-    check_sphere(&phases.inserted.mesh, distinct(phases.inserted.vertex_of.clone()));
+    let mut inserted = phases.inserted.mesh.clone();
+    inserted.check().unwrap();
+    inserted.compact();
+    check_sphere(&inserted, distinct(phases.inserted.vertex_of.clone()));
     phases
 }
 

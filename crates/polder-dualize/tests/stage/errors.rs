@@ -1,6 +1,7 @@
 //! Every error, from the input that causes it.
 
-use polder_dualize::{DVec2, DualizeError, reference};
+use polder_dualize::reference::{self, ToInsert};
+use polder_dualize::{DVec2, DualizeError};
 use polder_mesh::{GhostMesh, NONE};
 use polder_voronoi::{Diagram, Options, Sites, UNCOLORED, VoronoiError};
 
@@ -69,9 +70,21 @@ fn what_does_not_fit_a_mesh_is_refused() {
     };
     assert_eq!(index(reference::shift(mesh.clone(), &line, &line[..2]).map(drop)), 2);
     assert_eq!(index(reference::shift(mesh.clone(), &line[..2], &line).map(drop)), 1);
-    assert_eq!(index(reference::insert(mesh.clone(), &line[..2], &[], &[]).map(drop)), 1);
-    assert_eq!(index(reference::insert(mesh.clone(), &line, &[3, 4], &[0, 0]).map(drop)), 1);
-    assert_eq!(index(reference::insert(mesh, &line, &[3], &[]).map(drop)), 0);
+    let new = |points: &[u32], starts: &[u32], slots: &[[u32; 2]]| ToInsert {
+        points: points.to_vec(),
+        starts: starts.to_vec(),
+        slots: slots.to_vec(),
+    };
+    assert_eq!(index(reference::insert(mesh.clone(), &line[..2], &ToInsert::default()).map(drop)), 1);
+    assert_eq!(index(reference::insert(mesh.clone(), &line, &new(&[3, 4], &[0, 0], &[[4, 5], [6, 7]])).map(drop)), 1);
+    for slots in [[3, 4], [4, 4], [5, 8], [NONE; 2]] {
+        assert_eq!(index(reference::insert(mesh.clone(), &line, &new(&[3], &[0], &[slots])).map(drop)), 0);
+    }
+    assert_eq!(
+        index(reference::insert(GhostMesh::default(), &line[..2], &new(&[0, 1], &[0; 2], &[[NONE; 2]; 2])).map(drop)),
+        1
+    );
+    assert_eq!(index(reference::insert(mesh, &line, &new(&[3], &[], &[])).map(drop)), 0);
 }
 
 /// A mesh that is no triangulation: walks do not find what they look for, or the certificate fails.
@@ -82,7 +95,8 @@ fn inserting_into_a_mesh_that_overlaps_ends_with_an_error() {
     polder_flip::reference::flip(&mut mesh, &at).unwrap();
     let mut positions: Vec<DVec2> = (0..9).map(|i| at[i * 2 % 9]).collect();
     positions.push(DVec2::new(1.2, 0.7));
-    let error = reference::insert(mesh, &positions, &[9], &[NONE]).unwrap_err();
+    let new = ToInsert::into_free_slots(&mesh, vec![9], vec![NONE]);
+    let error = reference::insert(mesh, &positions, &new).unwrap_err();
     let known = matches!(error, DualizeError::WalkLost { .. } | DualizeError::NotCounterclockwise { .. });
     assert!(known, "{error}");
 }
@@ -94,5 +108,5 @@ fn errors_of_stage_1_come_through() {
     assert_eq!(error, DualizeError::Voronoi(VoronoiError::NoPoints));
     let error = reference::triangulate(&[DVec2::ZERO, DVec2::new(0.0, f64::NAN)], &options).unwrap_err();
     assert_eq!(error.to_string(), "point 1: its y coordinate is not a finite number");
-    assert_eq!(reference::insert(GhostMesh::default(), &[], &[], &[]).unwrap().mesh.slots(), 0);
+    assert_eq!(reference::insert(GhostMesh::default(), &[], &ToInsert::default()).unwrap().mesh.slots(), 0);
 }

@@ -104,8 +104,8 @@ fn closed_before(phases: Phases, points: &[DVec2]) -> Phases {
     let (voronoi, centers, positions) = (&phases.voronoi, phases.centers(), phases.positions(points));
     let dualized = reference::dualize(&voronoi.diagram, &voronoi.sites).unwrap();
     let shifted = reference::shift(dualized.mesh.clone(), &centers, &positions).unwrap();
-    let (missing, starts) = reference::points_to_insert(&voronoi.diagram, &voronoi.sites, &shifted);
-    let inserted = reference::insert(shifted.mesh.clone(), &positions, &missing, &starts).unwrap();
+    let new = reference::points_to_insert(&voronoi.diagram, &voronoi.sites, &shifted);
+    let inserted = reference::insert(shifted.mesh.clone(), &positions, &new).unwrap();
     let closed = Phases { dualized, shifted, inserted, ..phases };
     assert_eq!(finish(points, &closed), by_sweep(points), "{points:?}");
     closed
@@ -211,7 +211,7 @@ fn sorted_clusters_need_few_rounds() {
     points.sort_by(|p, q| p.x.total_cmp(&q.x));
     let phases = phases(&points);
     assert!(phases.inserted.rounds <= 18, "{} rounds", phases.inserted.rounds);
-    assert!(phases.inserted.flips.flips <= 2 * points.len() as u64);
+    assert!(phases.inserted.flips.flips <= 3 * points.len() as u64);
 }
 
 /// All points outside the hull of the sites: of each crowd beyond a hull edge, one comes first, and it has to be one in
@@ -227,7 +227,7 @@ fn exponential_clusters_need_few_rounds() {
     let mut random = Random::new(12);
     let points: Vec<DVec2> = (0..20_000).map(|_| 2f64.powi(-(random.below(46) as i32)) * random.point()).collect();
     let phases = phases(&points);
-    assert!(phases.inserted.rounds <= 60, "{} rounds", phases.inserted.rounds);
+    assert!(phases.inserted.rounds <= 30, "{} rounds", phases.inserted.rounds);
 }
 
 #[test]

@@ -131,6 +131,10 @@ pub fn flip_round(mesh: &mut GhostMesh, positions: &[DVec2], active: &mut Active
         active.candidates.extend([next(diagonal), prev(diagonal), next(other), prev(other)]);
         flips += 1;
     }
+    // Each by its lower half-edge: whoever changes the mesh before the next round changes what the names mean.
+    for h in &mut active.candidates {
+        *h = (*h).min(mesh.twin(*h));
+    }
     flips
 }
 

@@ -1,6 +1,6 @@
 use super::{lattice, scattered};
 use crate::Inserted;
-use crate::reference::insert;
+use crate::reference::{ToInsert, insert};
 use glam::DVec2;
 use polder_flip::reference::chain;
 use polder_mesh::{GhostMesh, NONE};
@@ -8,13 +8,17 @@ use polder_mesh::{GhostMesh, NONE};
 /// Inserts all points but those of a chain into it.
 fn from_chain(vertices: &[u32], positions: &[DVec2]) -> Inserted {
     let points: Vec<u32> = (0..positions.len() as u32).filter(|v| !vertices.contains(v)).collect();
-    let inserted = insert(chain(vertices), positions, &points, &vec![NONE; points.len()]).unwrap();
+    let starts = vec![NONE; points.len()];
+    let mesh = chain(vertices);
+    let new = ToInsert::into_free_slots(&mesh, points, starts);
+    let inserted = insert(mesh, positions, &new).unwrap();
     inserted.mesh.check().unwrap();
     let mut distinct = inserted.vertex_of.clone();
     distinct.sort_unstable();
     distinct.dedup();
     let expected = if distinct.len() < 2 { 0 } else { 2 * distinct.len() - 2 };
-    assert_eq!(inserted.mesh.slots(), expected);
+    let used = (0..inserted.mesh.slots()).filter(|&t| !inserted.mesh.is_deleted(t)).count();
+    assert_eq!(used, expected);
     for (point, &v) in inserted.vertex_of.iter().enumerate() {
         assert_eq!(positions[point], positions[v as usize]);
     }
@@ -23,7 +27,7 @@ fn from_chain(vertices: &[u32], positions: &[DVec2]) -> Inserted {
 
 #[test]
 fn from_nothing() {
-    assert_eq!(insert(GhostMesh::default(), &[], &[], &[]).unwrap(), Inserted::default());
+    assert_eq!(insert(GhostMesh::default(), &[], &ToInsert::default()).unwrap(), Inserted::default());
     for n in [1, 2, 3, 4, 10, 1000] {
         let inserted = from_chain(&[], &scattered(n));
         assert!(inserted.bootstrapped);

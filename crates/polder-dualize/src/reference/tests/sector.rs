@@ -1,6 +1,6 @@
 use super::{delaunay, lattice};
-use crate::reference::insert;
 use crate::reference::sector::{Center, sector};
+use crate::reference::{ToInsert, insert};
 use glam::DVec2;
 use polder_mesh::GhostMesh;
 
@@ -42,7 +42,8 @@ fn winners_at_neighboring_hull_edges_do_not_overlap() {
             let positions = [&base[..], &ends].concat();
             let mesh = delaunay(&base);
             // The certificate at the end of the stage is the check.
-            let inserted = insert(mesh, &positions, &[3, 4], &starts).unwrap();
+            let new = ToInsert::into_free_slots(&mesh, vec![3, 4], starts.to_vec());
+            let inserted = insert(mesh, &positions, &new).unwrap();
             assert_eq!(inserted.mesh.slots(), 2 * 5 - 2);
         }
     }
@@ -55,7 +56,8 @@ fn points_all_round_a_small_triangle_are_inserted() {
     let mesh = delaunay(&positions);
     positions.extend((0..500).map(|i| DVec2::from_angle(f64::from(i)) * (2.0 + f64::from(i % 7))));
     let points: Vec<u32> = (3..503).collect();
-    let inserted = insert(mesh, &positions, &points, &[0; 500]).unwrap();
+    let new = ToInsert::into_free_slots(&mesh, points, vec![0; 500]);
+    let inserted = insert(mesh, &positions, &new).unwrap();
     assert_eq!((inserted.inserted, inserted.mesh.slots()), (500, 2 * 503 - 2));
     assert!(inserted.rounds < 20, "{} rounds", inserted.rounds);
 }

@@ -1,0 +1,86 @@
+// What the kernels of stage 4 share.
+//
+// Points that wait stand in a list with the half-edge from which the next walk to each starts, in any order. There are two
+// lists, of `limit` entries each, one behind the other: a round reads one and writes the other, and PARITY says which.
+//
+// For each point of the list two words: its place, and its score or, later, the second triangle of its edge. The place is
+// three times the slot of a triangle, or with ON_EDGE a half-edge, the lower one of its edge; NONE for
+// a point that is done. WON says that it got what it claims.
+//
+// For each slot three words: the least score that claims it, the least priority among points with that score, and by which
+// point it was split last: four times its number, and 3 if the point lies inside, or else which of its edges was split.
+#ifndef INSERT_GLSL
+#define INSERT_GLSL
+
+layout(local_size_x_id = 0, local_size_x = 256) in;
+
+#include "groups.glsl"
+#include "mesh.glsl"
+
+BUFFER(U32x2, uvec2, 8, );
+BUFFER(ReadU32x2, uvec2, 8, readonly);
+
+const uint ON_EDGE = 0x80000000u;
+const uint WON = 0x40000000u;
+const uint PLACE = 0x3fffffffu;
+
+const uint CLAIM = 3u;
+const uint SCORE = 0u;
+const uint FIRST = 1u;
+const uint SPLIT = 2u;
+
+// The words that steer. Points in the list that is read, and in the other one.
+const uint WAITING = 0u;
+const uint NEXT = 1u;
+const uint PARITY = 2u;
+// The number of the round, from 1.
+const uint ROUND = 3u;
+// Workgroups for the points that wait.
+const uint GROUPS = 4u;
+// Workgroups that are done with the last kernel of a round.
+const uint FINISHED = 8u;
+// The corners of the triangle that sectors are seen from, and its slot.
+const uint CENTER = 9u;
+const uint CENTER_SLOT = 28u;
+// Points below this number have the slots that `freed` says, and point 0 those two if it is not one of them.
+const uint SITES = 13u;
+const uint GIVEN = 32u;
+// Whether the mesh has any triangle. Without a finite one: the first and last of its vertices or, if it is empty, of all
+// points; and the least priority of the points off the line through them.
+const uint CHAIN = 14u;
+const uint ENDS = 30u;
+const uint APEX = 29u;
+// The last round after which edges were flipped; whether the hull could not be closed.
+const uint FLIPPED = 15u;
+const uint OPEN_HULL = 19u;
+// What is reported.
+const uint INSERTED = 16u;
+const uint DUPLICATES = 17u;
+// The lowest point whose walk did not end.
+const uint LOST = 18u;
+
+// The two slots of a point.
+uvec2 slots_of(uint point, ReadU32x2 freed, ReadU32 words) {
+    if (point < words.at[SITES]) {
+        return freed.at[point];
+    }
+    return point == 0u ? uvec2(words.at[GIVEN], words.at[GIVEN + 1u]) : uvec2(2u * point - 2u, 2u * point - 1u);
+}
+
+uint item_index() {
+    return group_index() * WORKGROUP + gl_LocalInvocationIndex;
+}
+
+uint item_stride() {
+    return gl_NumWorkGroups.x * gl_NumWorkGroups.y * WORKGROUP;
+}
+
+// Workgroups for so many items: `groups_for` of polder-vulkan.
+uvec3 groups_of(uint items) {
+    uint wanted = items / 256u + uint(items % 256u != 0u);
+    uint rows = wanted / 65535u + uint(wanted % 65535u != 0u);
+    uint columns = rows <= 1u ? wanted : wanted / rows + uint(wanted % rows != 0u);
+    return uvec3(columns, rows, min(rows, 1u));
+}
+
+#endif

@@ -1,0 +1,104 @@
+// Insertion, 3 of 4 of a round: points that got all they claimed split it, the others go on the next list.
+//
+// Links between the parts are new; outer edges keep the name of the other side that it had before, until `insert_relink`
+// renews it. For each point `rounds` says in which round it was inserted.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "insert.glsl"
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+
+layout(push_constant, std430) uniform Args {
+    U32 triangles;
+    U32 links;
+    U32x2 waiting;
+    ReadU32x2 freed;
+    U32 places;
+    U32 claims;
+    WriteU32 rounds;
+    U32 words;
+    uint limit;
+};
+
+void put(uint t, uvec3 corner) {
+    triangles.at[3u * t] = corner.x;
+    triangles.at[3u * t + 1u] = corner.y;
+    triangles.at[3u * t + 2u] = corner.z;
+}
+
+// Into the triangle t: slot t has a, b, p after, s has b, c, p and u has c, a, p.
+void split_triangle(uint t, uint p, uint s, uint u) {
+    uvec3 corner = corners(triangles, t);
+    uvec2 outer = uvec2(twin(links, 3u * t), twin(links, 3u * t + 1u));
+    triangles.at[3u * t + 2u] = p;
+    put(s, uvec3(corner.y, corner.z, p));
+    put(u, uvec3(corner.z, corner.x, p));
+    link(links, 3u * t, 3u * s + 1u);
+    link(links, 3u * s, 3u * u + 1u);
+    link(links, 3u * u, 3u * t + 1u);
+    links.at[3u * s + 2u] = outer.x;
+    links.at[3u * u + 2u] = outer.y;
+    claims.at[CLAIM * t + SPLIT] = p << 2 | 3u;
+}
+
+// One side of an edge: `side` leads to p after, and the slot s has its apex, p and its end.
+void split_side(uint side, uint p, uint s) {
+    uint outer = twin(links, next_edge(side));
+    put(s, uvec3(apex(triangles, side), p, destination(triangles, side)));
+    triangles.at[prev_edge(side)] = p;
+    link(links, next_edge(side), 3u * s + 2u);
+    links.at[3u * s + 1u] = outer;
+    claims.at[CLAIM * (side / 3u) + SPLIT] = p << 2 | side % 3u;
+}
+
+void main() {
+    uint i = item_index();
+    uint place = i < words.at[WAITING] ? places.at[2u * i] : NONE;
+    uint list = words.at[PARITY] * limit;
+    bool won = false;
+    bool lost = false;
+    uint point = 0u;
+    uint h = place & PLACE;
+    if (place != NONE) {
+        point = waiting.at[list + i].x;
+        // Nobody else has this priority, and nobody without the least score has set it.
+        uint mine = priority(point);
+        won = claims.at[CLAIM * (h / 3u) + FIRST] == mine;
+        if ((place & ON_EDGE) != 0u) {
+            won = won && claims.at[CLAIM * places.at[2u * i + 1u] + FIRST] == mine;
+        }
+        lost = !won;
+    }
+    uint losers = subgroupAdd(uint(lost));
+    uint before = subgroupExclusiveAdd(uint(lost));
+    uint winners = subgroupAdd(uint(won));
+    uint base = 0u;
+    if (subgroupElect()) {
+        if (losers > 0u) {
+            base = atomicAdd(words.at[NEXT], losers);
+        }
+        if (winners > 0u) {
+            atomicAdd(words.at[INSERTED], winners);
+        }
+    }
+    base = subgroupBroadcastFirst(base);
+    if (lost) {
+        // A triangle next to the point still is in that slot, or near it.
+        waiting.at[limit - list + base + before] = uvec2(point, h);
+    }
+    if (!won) {
+        return;
+    }
+    places.at[2u * i] = place | WON;
+    rounds.at[point] = words.at[ROUND];
+    uvec2 own = slots_of(point, freed, ReadU32(words));
+    if ((place & ON_EDGE) != 0u) {
+        uint g = twin(links, h);
+        split_side(h, point, own.x);
+        split_side(g, point, own.y);
+        link(links, h, 3u * own.y);
+        link(links, g, 3u * own.x);
+    } else {
+        split_triangle(h / 3u, point, own.x, own.y);
+    }
+}

@@ -1,0 +1,126 @@
+// Insertion, 4 of 4 of a round: the outer edges of what was split get their links, the edges around each new vertex go on
+// the list for flips, those of new ghost triangles on the list for the hull, and claims are cleared. The last workgroup
+// turns to the next round.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "insert.glsl"
+#include "edge_list.glsl"
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+
+layout(push_constant, std430) uniform Args {
+    ReadU32 triangles;
+    U32 links;
+    ReadU32x2 waiting;
+    ReadU32x2 freed;
+    ReadU32 places;
+    U32 claims;
+    ReadU32 rounds;
+    WriteU32 edges;
+    U32 edge_count;
+    WriteU32 hull_edges;
+    U32 hull_count;
+    U32 words;
+    uint limit;
+    uint edge_limit;
+    uint hull_limit;
+};
+
+// The name that half-edge g has after the round, and whether its triangle was split; who split it then sees to that side.
+uint renamed(uint g, out bool split) {
+    uint record = claims.at[CLAIM * (g / 3u) + SPLIT];
+    uint p = record >> 2;
+    split = record != NONE && rounds.at[p] == words.at[ROUND];
+    if (!split) {
+        return g;
+    }
+    uint k = g % 3u;
+    uint edge = record & 3u;
+    uvec2 own = slots_of(p, freed, ReadU32(words));
+    if (edge == 3u) {
+        return k == 2u ? g : 3u * own[k] + 2u;
+    }
+    if (k != (edge + 1u) % 3u) {
+        return g;
+    }
+    // The lower half-edge of the edge, as the point's place has it, got the first slot, and its new twin is in the second.
+    uint side = g - k + edge;
+    bool lower = links.at[side] == 3u * own.y;
+    return 3u * (lower ? own.x : own.y) + 1u;
+}
+
+void main() {
+    uint i = item_index();
+    uint place = i < words.at[WAITING] ? places.at[2u * i] : NONE;
+    bool won = place != NONE && (place & WON) != 0u;
+    bool on_edge = (place & ON_EDGE) != 0u;
+    uint h = place & PLACE;
+    uint t = h / 3u;
+    uvec4 outer = uvec4(NONE);
+    uvec4 parts = uvec4(t, NONE, NONE, NONE);
+    uint count = 0u;
+    if (place != NONE) {
+        claims.at[CLAIM * t + SCORE] = NONE;
+        claims.at[CLAIM * t + FIRST] = NONE;
+        if (on_edge) {
+            uint other = places.at[2u * i + 1u];
+            claims.at[CLAIM * other + SCORE] = NONE;
+            claims.at[CLAIM * other + FIRST] = NONE;
+            parts.w = other;
+        }
+    }
+    if (won) {
+        uvec2 own = slots_of(waiting.at[words.at[PARITY] * limit + i].x, freed, ReadU32(words));
+        parts.yz = own;
+        outer = uvec4(3u * t + 2u, 3u * own.x + 2u, 3u * own.y + 2u, NONE);
+        count = 3u;
+        if (on_edge) {
+            uint g = links.at[3u * own.x];
+            outer = uvec4(prev_edge(h), prev_edge(g), 3u * own.x + 1u, 3u * own.y + 1u);
+            count = 4u;
+        }
+    }
+    for (uint k = 0u; k < count; k++) {
+        bool split;
+        uint other = renamed(links.at[outer[k]] & HALF_EDGE, split);
+        links.at[outer[k]] = other;
+        if (!split) {
+            links.at[other] = outer[k];
+        }
+    }
+    uint all = subgroupAdd(count);
+    uint before = subgroupExclusiveAdd(count);
+    uint base = 0u;
+    if (subgroupElect() && all > 0u) {
+        base = atomicAdd(edge_count.at[0], all);
+    }
+    base = subgroupBroadcastFirst(base) + before;
+    for (uint k = 0u; k < count; k++) {
+        if (base + k < edge_limit) {
+            edges.at[base + k] = outer[k];
+        }
+        if (is_ghost(triangles, parts[k])) {
+            append_triangle(hull_edges, hull_count, hull_limit, parts[k]);
+        }
+    }
+
+    barrier();
+    if (gl_LocalInvocationIndex != 0u) {
+        return;
+    }
+    uint groups = gl_NumWorkGroups.x * gl_NumWorkGroups.y;
+    if (atomicAdd(words.at[FINISHED], 1u) != groups - 1u) {
+        return;
+    }
+    // Of this dispatch only this invocation is left.
+    words.at[FINISHED] = 0u;
+    uint next = words.at[NEXT];
+    uvec3 size = groups_of(next);
+    for (uint k = 0u; k < 3u; k++) {
+        words.at[GROUPS + k] = size[k];
+    }
+    words.at[WAITING] = next;
+    words.at[NEXT] = 0u;
+    words.at[PARITY] ^= 1u;
+    words.at[ROUND] += 1u;
+}

@@ -1,0 +1,508 @@
+//! Each kernel of stage 4 against the reference of its name, bit for bit.
+#![cfg(feature = "gpu-tests")]
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod vulkan_support;
+
+use glam::DVec2;
+use polder_dualize::kernels::*;
+use polder_dualize::reference::kernels::insert as expected;
+use polder_dualize::reference::{self, ToInsert};
+use polder_flip::gpu::{Arithmetic, Mesh};
+use polder_flip::priority;
+use polder_flip::reference::{chain, sweep};
+use polder_mesh::{GhostMesh, NONE};
+use polder_tests::point_families;
+use polder_voronoi::{Options, Resolution};
+use polder_vulkan::{Buffer, Kernel, Shader};
+use vulkan_support::Gpu;
+
+/// Places of words, as in `insert.glsl`.
+const WAITING: usize = 0;
+const NEXT: usize = 1;
+const PARITY: usize = 2;
+const ROUND: usize = 3;
+const GROUPS: usize = 4;
+const FINISHED: usize = 8;
+const CENTER: usize = 9;
+const SITES: usize = 13;
+const CHAIN: usize = 14;
+const FLIPPED: usize = 15;
+const INSERTED: usize = 16;
+const DUPLICATES: usize = 17;
+const LOST: usize = 18;
+const OPEN_HULL: usize = 19;
+const CENTER_SLOT: usize = 28;
+const APEX: usize = 29;
+const ENDS: usize = 30;
+const GIVEN: usize = 32;
+
+/// Words before anything has run.
+fn words() -> [u32; 40] {
+    let mut words = [0; 40];
+    words[CENTER_SLOT..CENTER_SLOT + 8].fill(NONE);
+    words
+}
+
+fn run<S: Shader>(gpu: &mut Gpu, items: usize, arguments: &S::Args<'_>) {
+    let kernel = Kernel::<S>::new(&gpu.device, &[]).unwrap();
+    run_kernel(gpu, &kernel, items, arguments);
+}
+
+fn run_kernel<S: Shader>(gpu: &mut Gpu, kernel: &Kernel<S>, items: usize, arguments: &S::Args<'_>) {
+    let mut recording = gpu.recording();
+    recording.dispatch(kernel, polder_vulkan::groups_for(items, 256), arguments);
+    gpu.run(&recording);
+}
+
+/// A round about to begin, in the reference and on the device.
+struct Round {
+    mesh: GhostMesh,
+    positions: Vec<DVec2>,
+    slots: Vec<[u32; 2]>,
+    new: ToInsert,
+    begun: expected::Begun,
+    center: [DVec2; 3],
+    waiting: Vec<[u32; 2]>,
+    claims: Vec<[u32; 3]>,
+    rounds: Vec<u32>,
+}
+
+impl Round {
+    fn new(mesh: GhostMesh, positions: Vec<DVec2>, new: ToInsert) -> Self {
+        let count = 2 * positions.len() - 2;
+        let mut padded = GhostMesh::with_slots(count);
+        padded.triangles[..mesh.slots()].copy_from_slice(&mesh.triangles);
+        padded.links[..mesh.slots()].copy_from_slice(&mesh.links);
+        let mut slots = vec![[NONE; 2]; positions.len()];
+        new.points.iter().zip(&new.slots).for_each(|(&point, &pair)| slots[point as usize] = pair);
+        let begun = expected::insert_begin(&padded, positions.len());
+        let center = padded.triangles[begun.center_slot as usize].map(|v| positions[v as usize]);
+        let waiting = expected::insert_wait(&begun, &new.points, &new.starts);
+        let (claims, rounds) = (vec![[NONE; 3]; count], vec![0; positions.len()]);
+        Self { mesh: padded, positions, slots, new, begun, center, waiting, claims, rounds }
+    }
+
+    fn locate(&mut self) -> expected::Located {
+        expected::insert_locate(&self.mesh, &self.positions, self.center, &self.waiting, &mut self.claims).unwrap()
+    }
+
+    fn claim(&mut self, places: &mut [[u32; 2]]) {
+        expected::insert_claim(&self.mesh, &self.waiting, places, &mut self.claims);
+    }
+
+    fn graft(&mut self, places: &mut [[u32; 2]]) -> Vec<[u32; 2]> {
+        let Self { mesh, slots, waiting, claims, rounds, .. } = self;
+        expected::insert_graft(mesh, slots, waiting, places, claims, rounds, 1)
+    }
+
+    fn words(&self) -> [u32; 40] {
+        let mut words = words();
+        words[WAITING] = self.waiting.len() as u32;
+        words[ROUND] = 1;
+        words[SITES] = self.positions.len() as u32;
+        words[LOST] = NONE;
+        words[CENTER_SLOT] = self.begun.center_slot;
+        words[CENTER..CENTER + 3].copy_from_slice(&self.mesh.triangles[self.begun.center_slot as usize]);
+        words
+    }
+
+    fn on(&self, gpu: &mut Gpu, places: &[[u32; 2]], words: &[u32; 40]) -> On {
+        let mesh = Mesh::with_slots(&gpu.device, self.positions.len(), self.mesh.slots()).unwrap();
+        mesh.upload(&mut gpu.engine, &self.mesh, &self.positions).unwrap();
+        let limit = self.waiting.len();
+        let mut waiting = self.waiting.clone();
+        waiting.resize(2 * limit, [7; 2]);
+        let mut held = vec![[7; 2]; limit];
+        held[..places.len()].copy_from_slice(places);
+        On {
+            mesh,
+            waiting: gpu.buffer(&waiting),
+            freed: gpu.buffer(&self.slots),
+            places: gpu.buffer(held.as_flattened()),
+            claims: gpu.buffer(self.claims.as_flattened()),
+            rounds: gpu.buffer(&self.rounds),
+            vertex_of: gpu.buffer(&vec![7; self.positions.len()]),
+            hull: gpu.buffer(&[0]),
+            words: gpu.buffer(words),
+            limit: limit as u32,
+        }
+    }
+}
+
+struct On {
+    mesh: Mesh,
+    waiting: Buffer<[u32; 2]>,
+    freed: Buffer<[u32; 2]>,
+    places: Buffer<u32>,
+    claims: Buffer<u32>,
+    rounds: Buffer<u32>,
+    vertex_of: Buffer<u32>,
+    hull: Buffer<u32>,
+    words: Buffer<u32>,
+    limit: u32,
+}
+
+/// First rounds, with many points for each triangle and with few, outside and on vertices and edges.
+fn rounds() -> Vec<(String, Round)> {
+    let mut all = Vec::new();
+    for options in [Options::default(), Resolution::LongerSide(5).into()] {
+        for (name, pslg) in point_families(500, 41) {
+            let phases = reference::triangulate(pslg.points(), &options).unwrap();
+            let new = reference::points_to_insert(&phases.voronoi.diagram, &phases.voronoi.sites, &phases.shifted);
+            if phases.inserted.bootstrapped || new.is_empty() {
+                continue;
+            }
+            let positions = phases.positions(pslg.points());
+            all.push((format!("{name}, {options:?}"), Round::new(phases.shifted.mesh, positions, new)));
+        }
+    }
+    // Points on edges and vertices.
+    for side in [3, 9] {
+        let coarse = polder_io::generate::lattice(side, side);
+        let (mesh, _) = sweep(coarse.points()).unwrap();
+        let mut positions = coarse.points().to_vec();
+        positions.extend(polder_io::generate::lattice(2 * side, 2 * side).points().iter().map(|p| *p / 2.0));
+        let points: Vec<u32> = ((side * side) as u32..positions.len() as u32).collect();
+        let starts = points.iter().map(|p| p % 9).collect();
+        let new = ToInsert::into_free_slots(&mesh, points, starts);
+        all.push((format!("on edges, {side}"), Round::new(mesh, positions, new)));
+    }
+    all
+}
+
+#[test]
+fn insert_begin() {
+    let mut gpu = Gpu::open();
+    for (name, round) in rounds() {
+        let on = round.on(&mut gpu, &[], &words());
+        let (count, vertices) = (round.mesh.slots(), round.positions.len());
+        let (half_edges, sites) = (gpu.buffer(&vec![NONE; vertices]), gpu.buffer(&[3]));
+        let arguments = InsertBeginArgs {
+            triangles: on.mesh.corners(),
+            slots: on.mesh.slots(),
+            half_edges: half_edges.view(),
+            vertex_of: on.vertex_of.view(),
+            sites: sites.view(),
+            words: on.words.view(),
+            limit: count as u32,
+            vertices: vertices as u32,
+        };
+        run::<InsertBegin>(&mut gpu, count.max(vertices), &arguments);
+        let found = gpu.fetch(half_edges.view());
+        for (v, (&h, &wanted)) in found.iter().zip(&round.begun.half_edges).enumerate() {
+            // Any half-edge out of the vertex will do.
+            let right = if wanted == NONE { h == NONE } else { round.mesh.origin(h) == v as u32 };
+            assert!(right, "{name}: {v}");
+        }
+        assert!(gpu.fetch(on.vertex_of.view()).into_iter().eq(0..vertices as u32), "{name}");
+        let words = gpu.fetch(on.words.view());
+        assert_eq!((words[CENTER_SLOT], words[CHAIN], words[SITES]), (round.begun.center_slot, 1, 3), "{name}");
+    }
+}
+
+#[test]
+fn insert_wait() {
+    let mut gpu = Gpu::open();
+    for (name, round) in rounds() {
+        let mut before = words();
+        before[CENTER_SLOT] = round.begun.center_slot;
+        let on = round.on(&mut gpu, &[], &before);
+        let [points, starts, half_edges] =
+            [&round.new.points, &round.new.starts, &round.begun.half_edges].map(|list| gpu.buffer(list));
+        let arguments = InsertWaitArgs {
+            triangles: on.mesh.corners(),
+            half_edges: half_edges.view(),
+            points: points.view(),
+            starts: starts.view(),
+            counter: None,
+            waiting: on.waiting.view(),
+            slots: on.mesh.slots(),
+            words: on.words.view(),
+            limit: on.limit,
+            vertices: round.positions.len() as u32,
+        };
+        run::<InsertWait>(&mut gpu, round.waiting.len(), &arguments);
+        assert!(gpu.fetch(on.waiting.view())[..round.waiting.len()] == round.waiting, "{name}");
+        let words = gpu.fetch(on.words.view());
+        assert_eq!(words[CENTER..CENTER + 3], round.mesh.triangles[round.begun.center_slot as usize], "{name}");
+        assert_eq!([words[WAITING], words[ROUND], words[LOST]], [on.limit, 1, NONE], "{name}");
+        assert_eq!(words[GROUPS..GROUPS + 3], [on.limit.div_ceil(256), 1, 1], "{name}");
+        assert_eq!(gpu.fetch(on.mesh.slots())[0] as usize, round.mesh.slots());
+    }
+}
+
+#[test]
+fn insert_locate() {
+    let mut gpu = Gpu::open();
+    let (mut edges, mut outside, mut duplicates) = (0, 0, 0);
+    for (name, mut round) in rounds() {
+        let before = round.claims.clone();
+        let wanted = round.locate();
+        for arithmetic in [Arithmetic::Filtered, Arithmetic::Integers] {
+            let (claims, words) = (std::mem::replace(&mut round.claims, before.clone()), round.words());
+            let on = round.on(&mut gpu, &[], &words);
+            round.claims = claims;
+            let arguments = InsertLocateArgs {
+                triangles: on.mesh.corners(),
+                links: on.mesh.twins(),
+                positions: on.mesh.positions().cast(),
+                waiting: on.waiting.view(),
+                freed: on.freed.view(),
+                places: on.places.view(),
+                claims: on.claims.view(),
+                vertex_of: on.vertex_of.view(),
+                words: on.words.view(),
+                limit: on.limit,
+                vertices: round.positions.len() as u32,
+            };
+            let kernel = arithmetic.kernel::<InsertLocate>(&gpu.device, &[]).unwrap();
+            run_kernel(&mut gpu, &kernel, round.waiting.len(), &arguments);
+            assert!(gpu.fetch(on.places.view()) == wanted.places.as_flattened(), "{name}: places");
+            assert!(gpu.fetch(on.claims.view()) == round.claims.as_flattened(), "{name}: claims");
+            let vertex_of = gpu.fetch(on.vertex_of.view());
+            assert!(wanted.on_vertices.iter().all(|[point, v]| vertex_of[*point as usize] == *v), "{name}");
+            let words = gpu.fetch(on.words.view());
+            assert_eq!(words[DUPLICATES] as usize, wanted.on_vertices.len(), "{name}");
+            assert_eq!(words[LOST], NONE);
+        }
+        duplicates += wanted.on_vertices.len();
+        edges += wanted.places.iter().filter(|[place, _]| *place != NONE && place & expected::ON_EDGE != 0).count();
+        outside += wanted.places.iter().filter(|[place, score]| *place != NONE && *score > 1 << 31).count();
+    }
+    assert!(edges > 20 && outside > 100 && duplicates > 20, "{edges} on edges, {outside} outside, {duplicates} twice");
+}
+
+#[test]
+fn insert_claim() {
+    let mut gpu = Gpu::open();
+    for (name, mut round) in rounds() {
+        let mut places = round.locate().places;
+        let on = round.on(&mut gpu, &places, &round.words());
+        let arguments = InsertClaimArgs {
+            links: on.mesh.twins(),
+            waiting: on.waiting.view(),
+            places: on.places.view(),
+            claims: on.claims.view(),
+            words: on.words.view(),
+            limit: on.limit,
+        };
+        run::<InsertClaim>(&mut gpu, round.waiting.len(), &arguments);
+        round.claim(&mut places);
+        assert!(gpu.fetch(on.places.view()) == places.as_flattened(), "{name}: places");
+        assert!(gpu.fetch(on.claims.view()) == round.claims.as_flattened(), "{name}: claims");
+    }
+}
+
+#[test]
+fn insert_graft() {
+    let mut gpu = Gpu::open();
+    let mut inserted = 0;
+    for (name, mut round) in rounds() {
+        let mut places = round.locate().places;
+        round.claim(&mut places);
+        let on = round.on(&mut gpu, &places, &round.words());
+        let arguments = InsertGraftArgs {
+            triangles: on.mesh.corners(),
+            links: on.mesh.twins(),
+            waiting: on.waiting.view(),
+            freed: on.freed.view(),
+            places: on.places.view(),
+            claims: on.claims.view(),
+            rounds: on.rounds.view(),
+            words: on.words.view(),
+            limit: on.limit,
+        };
+        run::<InsertGraft>(&mut gpu, round.waiting.len(), &arguments);
+        let mut losers = round.graft(&mut places);
+        assert!(on.mesh.download(&mut gpu.engine).unwrap() == round.mesh, "{name}: mesh");
+        assert!(gpu.fetch(on.places.view()) == places.as_flattened(), "{name}: places");
+        assert!(gpu.fetch(on.claims.view()) == round.claims.as_flattened(), "{name}: claims");
+        assert!(gpu.fetch(on.rounds.view()) == round.rounds, "{name}: rounds");
+        let mut found = gpu.fetch(on.waiting.view())[round.waiting.len()..][..losers.len()].to_vec();
+        found.sort_unstable();
+        losers.sort_unstable();
+        assert!(found == losers, "{name}: losers");
+        let words = gpu.fetch(on.words.view());
+        let won = round.rounds.iter().filter(|&&round| round == 1).count();
+        assert_eq!([words[NEXT] as usize, words[INSERTED] as usize], [losers.len(), won], "{name}");
+        inserted += won;
+    }
+    assert!(inserted > 500, "{inserted}");
+}
+
+#[test]
+fn insert_relink() {
+    let mut gpu = Gpu::open();
+    for (name, mut round) in rounds() {
+        let mut places = round.locate().places;
+        round.claim(&mut places);
+        let losers = round.graft(&mut places);
+        let mut words = round.words();
+        words[NEXT] = losers.len() as u32;
+        let on = round.on(&mut gpu, &places, &words);
+        let room = 6 * round.mesh.slots();
+        let (edges, hull_edges) = (gpu.buffer(&vec![0; room]), gpu.buffer(&vec![0; room]));
+        let edge_count = gpu.buffer(&[0]);
+        let arguments = InsertRelinkArgs {
+            triangles: on.mesh.corners(),
+            links: on.mesh.twins(),
+            waiting: on.waiting.view(),
+            freed: on.freed.view(),
+            places: on.places.view(),
+            claims: on.claims.view(),
+            rounds: on.rounds.view(),
+            edges: edges.view(),
+            edge_count: edge_count.view(),
+            hull_edges: hull_edges.view(),
+            hull_count: on.hull.view(),
+            words: on.words.view(),
+            limit: on.limit,
+            edge_limit: room as u32,
+            hull_limit: room as u32,
+        };
+        run::<InsertRelink>(&mut gpu, round.waiting.len(), &arguments);
+        let Round { mesh, slots, waiting, claims, rounds, .. } = &mut round;
+        let wanted = expected::insert_relink(mesh, slots, waiting, &places, claims, rounds, 1);
+        mesh.check().unwrap();
+        assert!(on.mesh.download(&mut gpu.engine).unwrap() == *mesh, "{name}: mesh");
+        assert!(gpu.fetch(on.claims.view()) == claims.as_flattened(), "{name}: claims");
+        for (list, count, mut wanted) in
+            [(edges, edge_count, wanted[0].clone()), (hull_edges, on.hull, wanted[1].clone())]
+        {
+            let count = gpu.fetch(count.view())[0] as usize;
+            let mut found = gpu.fetch(list.view())[..count].to_vec();
+            found.sort_unstable();
+            wanted.sort_unstable();
+            assert!(found == wanted, "{name}: lists");
+        }
+        let words = gpu.fetch(on.words.view());
+        let turned = [WAITING, NEXT, PARITY, ROUND, FINISHED].map(|at| words[at]);
+        assert_eq!(turned, [losers.len() as u32, 0, 1, 2, 0], "{name}");
+        assert_eq!(words[GROUPS] as usize, losers.len().div_ceil(256), "{name}");
+    }
+}
+
+#[test]
+fn insert_turn() {
+    let mut gpu = Gpu::open();
+    for (reflex, round, flipped) in [(0, 1, 1), (0, 2, 1), (3, 2, 1), (3, 2, 2), (0, 9, 8)] {
+        let mut before = words();
+        [before[WAITING], before[ROUND], before[FLIPPED]] = [17, round, flipped];
+        let (pending, edges, words) = (gpu.buffer(&[reflex]), gpu.buffer(&[5]), gpu.buffer(&before));
+        let arguments = InsertTurnArgs { reflex: pending.view(), edge_count: edges.view(), words: words.view() };
+        run::<InsertTurn>(&mut gpu, 1, &arguments);
+        assert_eq!(gpu.fetch(edges.view())[0], expected::insert_turn(5, round, flipped));
+        let found = gpu.fetch(words.view());
+        let open = u32::from(reflex != 0);
+        assert_eq!([found[FLIPPED], found[OPEN_HULL], found[WAITING]], [round, open, 17 * (1 - open)]);
+    }
+}
+
+#[test]
+fn insert_ends() {
+    let mut gpu = Gpu::open();
+    for (name, pslg) in point_families(700, 42) {
+        let positions = pslg.points();
+        let count = positions.len() as u32;
+        for every in [1, 3, 900] {
+            // All points of an empty mesh, or some that are vertices.
+            let chosen: Vec<u32> = (0..count).filter(|v| v % every == 0).collect();
+            let mut before = words();
+            before[CHAIN] = u32::from(every > 1);
+            let half_edges: Vec<u32> = (0..count).map(|v| if v % every == 0 { v } else { NONE }).collect();
+            let mesh = Mesh::new(&gpu.device, positions.len()).unwrap();
+            let free = GhostMesh::with_slots(mesh.capacity());
+            mesh.upload(&mut gpu.engine, &free, positions).unwrap();
+            let (half_edges, words) = (gpu.buffer(&half_edges), gpu.buffer(&before));
+            let ends = gpu.buffer(&vec![7; 2 * count.div_ceil(256) as usize]);
+            for (items, count, last) in [(count, count, 0), (1, 2 * count.div_ceil(256), 1)] {
+                let arguments = InsertEndsArgs {
+                    triangles: mesh.corners(),
+                    links: mesh.twins(),
+                    positions: mesh.positions().cast(),
+                    half_edges: half_edges.view(),
+                    ends: ends.view(),
+                    words: words.view(),
+                    count,
+                    last,
+                };
+                run::<InsertEnds>(&mut gpu, items as usize, &arguments);
+            }
+            let [a, b] = expected::insert_ends(positions, chosen.into_iter());
+            let found = gpu.fetch(words.view());
+            assert_eq!(found[ENDS..ENDS + 2], [a, b], "{name}, {every}");
+            let laid = mesh.download(&mut gpu.engine).unwrap();
+            if every == 1 && positions[a as usize] != positions[b as usize] {
+                let keeps = if a == 0 { b } else { a };
+                let gives = a + b - keeps;
+                let pair = |v: u32| if v == 0 { [NONE; 2] } else { [2 * v - 2, 2 * v - 1] };
+                assert_eq!([found[SITES], found[GIVEN], found[GIVEN + 1]], [0, pair(gives)[0], pair(gives)[1]]);
+                laid.check().unwrap();
+                let ghosts = (0..laid.slots() as u32).filter(|&t| laid.is_ghost(t as usize));
+                assert!(ghosts.eq(pair(keeps)), "{name}");
+            } else {
+                assert!(laid == free, "{name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn insert_apex() {
+    let mut gpu = Gpu::open();
+    for (name, pslg) in point_families(700, 43) {
+        let positions = pslg.points();
+        let ends = expected::insert_ends(positions, 0..positions.len() as u32);
+        for arithmetic in [Arithmetic::Filtered, Arithmetic::Integers] {
+            let mut before = words();
+            before[ENDS..ENDS + 2].copy_from_slice(&ends);
+            let (words, positions) = (gpu.buffer(&before), gpu.buffer(positions));
+            let kernel = arithmetic.kernel(&gpu.device, &[]).unwrap();
+            let count = positions.len() as u32;
+            let arguments = InsertApexArgs { positions: positions.view().cast(), words: words.view(), count };
+            run_kernel::<InsertApex>(&mut gpu, &kernel, 256, &arguments);
+            let wanted = expected::insert_apex(pslg.points(), ends);
+            assert_eq!(gpu.fetch(words.view())[APEX], wanted, "{name}");
+        }
+    }
+}
+
+#[test]
+fn insert_join() {
+    let mut gpu = Gpu::open();
+    for (vertices, apex) in [(2, 5.0), (2, -5.0), (3, 1.0), (40, 0.25), (300, -9.0)] {
+        for reverse in [false, true] {
+            let mut order: Vec<u32> = (0..vertices).collect();
+            if reverse {
+                order.reverse();
+            }
+            let mut positions: Vec<DVec2> = (0..vertices).map(|i| DVec2::new(f64::from(i), 0.0)).collect();
+            positions.push(DVec2::new(1.5, apex));
+            let mut wanted = GhostMesh::with_slots(2 * positions.len() - 2);
+            let start = chain(&order);
+            wanted.triangles[..start.slots()].copy_from_slice(&start.triangles);
+            wanted.links[..start.slots()].copy_from_slice(&start.links);
+            let mesh = Mesh::new(&gpu.device, positions.len()).unwrap();
+            mesh.upload(&mut gpu.engine, &wanted, &positions).unwrap();
+            let mut before = words();
+            [before[CHAIN], before[APEX], before[ENDS]] = [1, priority(vertices), 0];
+            let (words, freed) = (gpu.buffer(&before), gpu.buffer(&[[0_u32; 2]]));
+            let kernel = Arithmetic::Filtered.kernel(&gpu.device, &[]).unwrap();
+            let arguments = InsertJoinArgs {
+                triangles: mesh.corners(),
+                links: mesh.twins(),
+                positions: mesh.positions().cast(),
+                slots: mesh.slots(),
+                freed: freed.view(),
+                words: words.view(),
+            };
+            run_kernel::<InsertJoin>(&mut gpu, &kernel, wanted.slots(), &arguments);
+            expected::insert_join(&mut wanted, &positions, vertices, [2 * vertices - 2, 2 * vertices - 1]);
+            wanted.check().unwrap();
+            assert!(mesh.download(&mut gpu.engine).unwrap() == wanted, "{vertices} {apex}");
+            let least = wanted.finite().next().unwrap() as u32;
+            assert_eq!(gpu.fetch(words.view())[CENTER_SLOT], least);
+        }
+    }
+}
