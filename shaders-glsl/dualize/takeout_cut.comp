@@ -1,8 +1,9 @@
 // Take out: cuts ears off the star of each site that goes, and merges what is left, or moves the site to infinity if it is
 // on the hull. Nothing outside the star is touched; where its outer edges have gone is noted.
 //
-// The filter takes small stars alone: it reads all of one, decides on all cuts, and then writes. What is left to the other
-// kernel is cut step by step in the mesh.
+// The filter takes small stars, each by one invocation: it reads all of one, decides on all cuts, and then writes. Where it
+// is undecided, or the star is large, the other kernel takes the star by a workgroup, which tests all ears at once, and
+// after each cut those two that it changed. Stars larger than shared memory are cut step by step in the mesh.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "takeout.glsl"
@@ -194,6 +195,168 @@ bool cut_small(uint v, uint degree, uint ghost) {
     return true;
 }
 
+// The star of a site, in shared memory.
+
+const uint MOST_SHARED = 384u;
+
+shared uvec4 wide_where[MOST_SHARED];
+shared uint wide_spokes[MOST_SHARED];
+shared uint wide_ends[MOST_SHARED]; // of spokes by now
+shared uint wide_places[MOST_SHARED];
+shared uint wide_across[MOST_SHARED];
+shared uint wide_ring[MOST_SHARED]; // the next spoke, and in the upper half the previous one
+shared uint wide_flags[MOST_SHARED];
+shared uint wide_degree;
+shared uint wide_ghost;
+
+const uint EAR = 1u;
+const uint INSIDE = 2u;
+
+uint wide_next(uint c) {
+    return wide_ring[c] & 0xffffu;
+}
+
+uint wide_previous(uint c) {
+    return wide_ring[c] >> 16;
+}
+
+void place_wide(uint c, uint to) {
+    links.at[to] = wide_across[c];
+    if ((wide_flags[c] & INSIDE) != 0u) {
+        links.at[wide_across[c]] = to;
+    } else {
+        wide_places[c] = to;
+    }
+}
+
+// By all invocations of the workgroup; or by none, if the star is larger than that.
+bool cut_wide(uint v, uint start) {
+    uint rank = gl_LocalInvocationIndex;
+    barrier();
+    if (rank == 0u) {
+        uint degree = 0u;
+        uint ghost = NONE;
+        uint h = start;
+        bool closed = false;
+        for (uint first = 0u; first < MOST_SHARED && !closed; first += STEPS) {
+            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                if (!closed) {
+                    wide_spokes[degree++] = h;
+                    h = rotate_ccw(links, h);
+                    closed = h == start;
+                }
+            }
+        }
+        wide_degree = closed ? degree : NONE;
+        wide_ghost = NONE;
+    }
+    barrier();
+    uint degree = wide_degree;
+    if (degree == NONE) {
+        return false;
+    }
+    for (uint k = rank; k < degree; k += WORKGROUP) {
+        uint h = wide_spokes[k];
+        uint end = destination(triangles, h);
+        wide_ends[k] = end;
+        wide_where[k] = positions.at[end < DELETED ? end : v];
+        wide_across[k] = links.at[next_edge(h)];
+        wide_places[k] = next_edge(h);
+        wide_ring[k] = (k + 1u == degree ? 0u : k + 1u) | (k == 0u ? degree - 1u : k - 1u) << 16;
+        wide_flags[k] = 0u;
+        if (end == GHOST) {
+            wide_ghost = k;
+        }
+    }
+    barrier();
+    uint ghost = wide_ghost;
+    bool is_inner = ghost == NONE;
+    uint heir = wide_ends[0];
+    uvec4 at = positions.at[v];
+    uint c = is_inner ? 0u : wide_next(ghost);
+    uint left = degree;
+    uint tests = degree;
+    bool ended = false;
+    for (uint cuts = 0u; cuts < degree; cuts++) {
+        for (uint i = rank; i < tests; i += WORKGROUP) {
+            uint k = tests > 2u ? i : i == 0u ? c : wide_next(c);
+            uint a = wide_previous(k);
+            uint b = wide_next(k);
+            bool is_ear = false;
+            if (a != ghost && b != ghost && k != ghost) {
+                is_decided_ear(at, wide_where[a], wide_where[k], wide_where[b], is_ear);
+            }
+            wide_flags[k] = wide_flags[k] & INSIDE | uint(is_ear);
+        }
+        barrier();
+        for (uint step = 0u; step <= left && !ended; step++) {
+            ended = is_inner ? left == 3u : wide_next(c) == ghost;
+            if (ended || (wide_flags[c] & EAR) != 0u) {
+                break;
+            }
+            c = wide_next(c);
+        }
+        bool is_ear = !ended && (wide_flags[c] & EAR) != 0u;
+        barrier();
+        if (!is_ear) {
+            break;
+        }
+        // The triangle before spoke c becomes an ear; the spoke gets the end of the one before, which leaves the ring.
+        if (rank == 0u) {
+            uint a = wide_previous(c);
+            uint h = wide_spokes[c];
+            uint g = prev_edge(wide_spokes[a]);
+            triangles.at[prev_edge(g)] = wide_ends[wide_next(c)];
+            triangles.at[prev_edge(h)] = wide_ends[a];
+            place_wide(c, g);
+            wide_across[c] = next_edge(g);
+            wide_flags[c] |= INSIDE;
+            link(links, next_edge(h), next_edge(g));
+            wide_ends[c] = wide_ends[a];
+            wide_where[c] = wide_where[a];
+            uint before = wide_previous(a);
+            wide_ring[c] = wide_next(c) | before << 16;
+            wide_ring[before] = c | wide_previous(before) << 16;
+            link(links, h, prev_edge(wide_spokes[before]));
+        }
+        left--;
+        tests = 2u;
+        barrier();
+    }
+    if (rank == 0u) {
+        uint h = wide_spokes[c];
+        uint next = wide_next(c);
+        uint previous = wide_previous(c);
+        if (!ended) {
+            note_broken(words, v);
+        } else if (is_inner) {
+            triangles.at[next_edge(h)] = wide_ends[previous];
+            place_wide(next, prev_edge(h));
+            place_wide(previous, h);
+            free_two(v, wide_spokes[next] / 3u, wide_spokes[previous] / 3u);
+        } else {
+            uint first = wide_next(next);
+            uint spoke = first;
+            for (uint k = 0u; k < degree && spoke != c; k++) {
+                triangles.at[next_edge(wide_spokes[spoke])] = GHOST;
+                spoke = wide_next(spoke);
+            }
+            place_wide(c, prev_edge(wide_spokes[previous]));
+            place_wide(next, wide_spokes[first]);
+            free_two(v, h / 3u, wide_spokes[next] / 3u);
+        }
+        state.at[v] = heir;
+        wide_degree = atomicAdd(words.at[OUT_EDGES + round], degree);
+    }
+    barrier();
+    for (uint k = rank; k < degree; k += WORKGROUP) {
+        uint t = wide_spokes[k] / 3u;
+        edges.at[wide_degree + k] = uvec2(t, wide_places[k]);
+        edge_of.at[t] = wide_degree + k;
+    }
+    return true;
+}
+
 // The star of a site, in the mesh.
 
 // The outer edge, or the edge of an ear, at `from` goes to `to`, in another triangle of the same star.
@@ -304,13 +467,19 @@ void cut_large(uint v, uint start) {
 
 void main() {
     uint count = words.at[(again != 0u ? OUT_DEFERRED : OUT_WINNERS) + round];
-    for (uint i = first_item(); i < count; i += item_stride()) {
-        uint start = again != 0u ? deferred.at[i] : winners.at[i];
-        uint v = origin(triangles, start);
-        if (ARITHMETIC != FAST) {
-            cut_large(v, start);
-            continue;
+    if (ARITHMETIC != FAST) {
+        for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) {
+            uint start = again != 0u ? deferred.at[i] : winners.at[i];
+            uint v = origin(triangles, start);
+            if (!cut_wide(v, start) && gl_LocalInvocationIndex == 0u) {
+                cut_large(v, start);
+            }
         }
+        return;
+    }
+    for (uint i = first_item(); i < count; i += item_stride()) {
+        uint start = winners.at[i];
+        uint v = origin(triangles, start);
         uint degree = 0u;
         uint ghost = NONE;
         uint h = start;

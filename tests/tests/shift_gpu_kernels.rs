@@ -332,72 +332,90 @@ fn takeout_elect() {
     assert!(winners_in_all > 500 && chains > 0, "{winners_in_all} {chains}");
 }
 
+/// A hub in the middle of so many vertices on a circle, to be taken out.
+fn hub(spokes: u32) -> (Stuck, takeout::Elected) {
+    let on_circle = |i| glam::DVec2::from_angle(std::f64::consts::TAU * f64::from(i) / f64::from(spokes));
+    let positions: Vec<_> = std::iter::once(glam::DVec2::ZERO).chain((0..spokes).map(on_circle)).collect();
+    let (mut mesh, _) = polder_flip::reference::sweep(&positions).unwrap();
+    polder_flip::reference::flip(&mut mesh, &positions).unwrap();
+    let mut state: Vec<u32> = (0..=spokes).collect();
+    state[0] = PINNED | mesh.half_edge_of_vertex(1)[0];
+    let elected = takeout::takeout_elect(&mesh, &state, &[0]);
+    (Stuck { mesh, positions, state, sites: vec![0] }, elected)
+}
+
 /// Cutting and linking, which give a mesh together.
 fn cut_and_link(only_cut: bool) {
     let mut device = Device::open();
+    for spokes in [3, 15, 16, 17, 40, 383, 384, 385, 1000] {
+        let (now, elected) = hub(spokes);
+        assert_eq!(elected.winners.len(), 1);
+        cut_and_link_round(&mut device, "hub", only_cut, &now, &elected);
+    }
     for case in cases() {
-        each_round(&case, |now, elected| {
-            for arithmetic in device.arithmetics() {
-                let held = device.hold(&now.mesh, &now.positions);
-                let (sites, slots) = (now.state.len(), now.mesh.slots());
-                let states = device.gpu.buffer(&now.state);
-                let mut winners = elected.winners.clone();
-                winners.push(7);
-                let (winners, deferred) = (device.gpu.buffer(&winners), device.gpu.buffer(&vec![7_u32; sites]));
-                let freed = device.gpu.buffer(&vec![[NONE; 2]; sites]);
-                let (edge_of, edges) =
-                    (device.gpu.buffer(&vec![7_u32; slots]), device.gpu.buffer(&vec![[7_u32; 2]; slots]));
-                let counts = device.gpu.buffer(&words(192, 1, elected.winners.len()));
-                let cut = TakeoutCutArgs {
-                    triangles: held.mesh.corners(),
-                    links: held.mesh.twins(),
-                    positions: held.mesh.positions().cast(),
-                    state: states.view(),
-                    winners: winners.view(),
-                    deferred: deferred.view(),
-                    freed: freed.view().cast(),
-                    edge_of: edge_of.view(),
-                    edges: edges.view(),
-                    words: counts.view(),
-                    round: 1,
-                    again: 0,
-                };
-                device.run_both::<TakeoutCut>(arithmetic, &cut, &TakeoutCutArgs { again: 1, ..cut });
-                let (mut mesh, mut state) = (now.mesh.clone(), now.state.clone());
-                let expected = takeout::takeout_cut(&mut mesh, &now.positions, &mut state, &elected.winners).unwrap();
-                let found = device.gpu.fetch(freed.view());
-                assert!(expected.iter().all(|&(v, slots)| found[v as usize] == slots), "{}", case.name);
-                assert_eq!(device.gpu.fetch(states.view()), state, "{}", case.name);
+        each_round(&case, |now, elected| cut_and_link_round(&mut device, &case.name, only_cut, now, elected));
+    }
+}
 
-                let before = held.mesh.download(&mut device.gpu.engine).unwrap();
-                assert!(before.triangles == mesh.triangles, "{}: triangles", case.name);
-                let link = TakeoutLinkArgs {
-                    triangles: held.mesh.corners(),
-                    links: held.mesh.twins(),
-                    state: states.view(),
-                    edge_of: edge_of.view(),
-                    edges: edges.view(),
-                    words: counts.view(),
-                    round: 1,
-                };
-                device.run::<TakeoutLink>(&link);
-                let after = held.mesh.download(&mut device.gpu.engine).unwrap();
-                if only_cut {
-                    assert!(after == mesh, "{}: links", case.name);
-                    continue;
-                }
-                let count = device.gpu.fetch(counts.view())[256 + 1] as usize;
-                let edges = device.gpu.fetch(edges.view())[..count].to_vec();
-                let mut linked = before;
-                takeout::takeout_link(&mut linked, &mut state, &edges);
-                assert!(after == linked, "{}", case.name);
-                // Which of its half-edges a site is told of is left to chance.
-                let told = device.gpu.fetch(states.view());
-                assert!(told.iter().zip(&state).all(|(a, b)| a & PINNED == b & PINNED), "{}", case.name);
-                let is_out_of = |v: u32, word: u32| word & PINNED == 0 || after.origin(word ^ PINNED) == v;
-                assert!((0..).zip(&told).all(|(v, &word)| is_out_of(v, word)), "{}", case.name);
-            }
-        });
+fn cut_and_link_round(device: &mut Device, name: &str, only_cut: bool, now: &Stuck, elected: &takeout::Elected) {
+    for arithmetic in device.arithmetics() {
+        let held = device.hold(&now.mesh, &now.positions);
+        let (sites, slots) = (now.state.len(), now.mesh.slots());
+        let states = device.gpu.buffer(&now.state);
+        let mut winners = elected.winners.clone();
+        winners.push(7);
+        let (winners, deferred) = (device.gpu.buffer(&winners), device.gpu.buffer(&vec![7_u32; sites]));
+        let freed = device.gpu.buffer(&vec![[NONE; 2]; sites]);
+        let (edge_of, edges) = (device.gpu.buffer(&vec![7_u32; slots]), device.gpu.buffer(&vec![[7_u32; 2]; slots]));
+        let counts = device.gpu.buffer(&words(192, 1, elected.winners.len()));
+        let cut = TakeoutCutArgs {
+            triangles: held.mesh.corners(),
+            links: held.mesh.twins(),
+            positions: held.mesh.positions().cast(),
+            state: states.view(),
+            winners: winners.view(),
+            deferred: deferred.view(),
+            freed: freed.view().cast(),
+            edge_of: edge_of.view(),
+            edges: edges.view(),
+            words: counts.view(),
+            round: 1,
+            again: 0,
+        };
+        device.run_both::<TakeoutCut>(arithmetic, &cut, &TakeoutCutArgs { again: 1, ..cut });
+        let (mut mesh, mut state) = (now.mesh.clone(), now.state.clone());
+        let expected = takeout::takeout_cut(&mut mesh, &now.positions, &mut state, &elected.winners).unwrap();
+        let found = device.gpu.fetch(freed.view());
+        assert!(expected.iter().all(|&(v, slots)| found[v as usize] == slots), "{}", name);
+        assert_eq!(device.gpu.fetch(states.view()), state, "{}", name);
+
+        let before = held.mesh.download(&mut device.gpu.engine).unwrap();
+        assert!(before.triangles == mesh.triangles, "{}: triangles", name);
+        let link = TakeoutLinkArgs {
+            triangles: held.mesh.corners(),
+            links: held.mesh.twins(),
+            state: states.view(),
+            edge_of: edge_of.view(),
+            edges: edges.view(),
+            words: counts.view(),
+            round: 1,
+        };
+        device.run::<TakeoutLink>(&link);
+        let after = held.mesh.download(&mut device.gpu.engine).unwrap();
+        if only_cut {
+            assert!(after == mesh, "{}: links", name);
+            continue;
+        }
+        let count = device.gpu.fetch(counts.view())[256 + 1] as usize;
+        let edges = device.gpu.fetch(edges.view())[..count].to_vec();
+        let mut linked = before;
+        takeout::takeout_link(&mut linked, &mut state, &edges);
+        assert!(after == linked, "{}", name);
+        // Which of its half-edges a site is told of is left to chance.
+        let told = device.gpu.fetch(states.view());
+        assert!(told.iter().zip(&state).all(|(a, b)| a & PINNED == b & PINNED), "{}", name);
+        let is_out_of = |v: u32, word: u32| word & PINNED == 0 || after.origin(word ^ PINNED) == v;
+        assert!((0..).zip(&told).all(|(v, &word)| is_out_of(v, word)), "{}", name);
     }
 }
 

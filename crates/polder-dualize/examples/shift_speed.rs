@@ -1,5 +1,6 @@
 //! How fast stage 3 is on a device: medians of ten, by timestamps and by the clock, after the result was held against the reference.
-//! `shift_speed [points]...`; a trailing `?` leaves the reference out, as in `10000000?`. `POLDER_DEVICE` names the device.
+//! `shift_speed [[circle:|ring:]points]...`; a trailing `?` leaves the reference out, as in `10000000?`. `POLDER_DEVICE`
+//! names the device.
 
 use polder_dualize::gpu::{dualize, shift};
 use polder_dualize::{DVec2, reference};
@@ -20,27 +21,39 @@ fn main() -> Result<(), Failed> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let cases = if arguments.is_empty() { vec!["20000".to_owned()] } else { arguments };
     for case in cases {
-        measure(&device, case.trim_end_matches('?').parse()?, !case.ends_with('?'))?;
+        let (shape, count) = case.trim_end_matches('?').split_once(':').unwrap_or(("square", &case));
+        let points = scattered(shape, count.trim_end_matches('?').parse()?);
+        println!("{shape}:");
+        measure(&device, &points, !case.ends_with('?'))?;
     }
     Ok(())
 }
 
-/// Points anywhere in a square.
-fn uniform(count: usize) -> Vec<DVec2> {
+/// Points anywhere in a square, on a circle, or in a ring a hundredth of its radius wide.
+fn scattered(shape: &str, count: usize) -> Vec<DVec2> {
     let mut state = 1_u64;
     let mut next = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((state ^ (state >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 11) as f64
+        ((state ^ (state >> 29)).wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 11) as f64 / 2f64.powi(53)
     };
-    (0..count).map(|_| DVec2::new(next(), next())).collect()
+    let mut point = || {
+        let (x, y) = (next(), next());
+        let angle = DVec2::from_angle(std::f64::consts::TAU * x);
+        match shape {
+            "circle" => angle,
+            "ring" => angle * (1.0 + 0.01 * y),
+            _ => DVec2::new(x, y),
+        }
+    };
+    (0..count).map(|_| point()).collect()
 }
 
-fn measure(device: &Device, count: usize, check: bool) -> Result<(), Failed> {
-    let points = uniform(count);
-    let mapping = GridMapping::fit(&points, &Options::default())?;
+fn measure(device: &Device, points: &[DVec2], check: bool) -> Result<(), Failed> {
+    let count = points.len();
+    let mapping = GridMapping::fit(points, &Options::default())?;
     let mut engine = Engine::new(device)?;
     let uploaded = Buffer::new(device, "points", count)?;
-    engine.upload(uploaded.view(), &points)?;
+    engine.upload(uploaded.view(), points)?;
     let voronoi = polder_voronoi::gpu::Stage::new(device)?;
     let diagram = voronoi.buffers(count, mapping.size())?;
     let dual = dualize::Stage::new(device)?;

@@ -1135,8 +1135,9 @@ impl Shader for ShiftMove {
 /// Take out: cuts ears off the star of each site that goes, and merges what is left, or moves the site to infinity if it is
 /// on the hull. Nothing outside the star is touched; where its outer edges have gone is noted.
 ///
-/// The filter takes small stars alone: it reads all of one, decides on all cuts, and then writes. What is left to the other
-/// kernel is cut step by step in the mesh.
+/// The filter takes small stars, each by one invocation: it reads all of one, decides on all cuts, and then writes. Where it
+/// is undecided, or the star is large, the other kernel takes the star by a workgroup, which tests all ears at once, and
+/// after each cut those two that it changed. Stars larger than shared memory are cut step by step in the mesh.
 #[derive(Debug, Clone, Copy)]
 pub enum TakeoutCut {}
 
@@ -1203,7 +1204,7 @@ impl Shader for TakeoutCut {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "fe3331271c9b2babce57f9ee769eab30263d762c4fe8550933fce0ea51d48a70",
+        source_hash: "361aca64cafc4cc52baf30461596c4684a863846a0920ab9dc654d700ae2cabd",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

@@ -34,7 +34,11 @@ pub(super) const OUT_ROUNDS: u32 = 6;
 /// Workgroups of a wide kernel, whose invocations stride over their items; and of one over what filters left open.
 const WIDE: u32 = 2112;
 const RARE: u32 = 132;
+/// Stars that are cut by workgroups at a time.
+const STARS: u32 = 792;
 const WIDE_ON_CPU: u32 = 16;
+/// Invocations that share a star.
+const WORKGROUP_OF_STAR: u32 = 32;
 
 /// What the stage takes beside the dualized mesh, all on the device.
 #[derive(Clone, Copy, Debug)]
@@ -68,6 +72,7 @@ pub struct Stage {
     pub(super) device: Device,
     pub(super) groups: [u32; 3],
     pub(super) rare: [u32; 3],
+    pub(super) stars: [u32; 3],
     shift_move: Kernel<ShiftMove>,
     pin_triangles: Kernels<PinTriangles>,
     pin_stars: Kernels<PinStars>,
@@ -88,10 +93,17 @@ impl Stage {
     /// Those of the device.
     pub fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
         let [wide, rare] = if device.info().kind == DeviceKind::Cpu { [WIDE_ON_CPU; 2] } else { [WIDE, RARE] };
+        // A workgroup takes a star: a small one, so that many stars are cut at a time.
+        let mut cut: Kernels<TakeoutCut> = arithmetic.kernels(device, &[])?;
+        if cut.rest.is_some() {
+            let small = WORKGROUP_OF_STAR.max(device.info().limits.subgroup);
+            cut.rest = arithmetic.kernels(device, &[("WORKGROUP", small)])?.rest;
+        }
         Ok(Self {
             device: device.clone(),
             groups: [wide, 1, 1],
             rare: [rare, 1, 1],
+            stars: [wide.min(STARS), 1, 1],
             shift_move: Kernel::new(device, &[])?,
             pin_triangles: arithmetic.kernels(device, &[])?,
             pin_stars: arithmetic.kernels(device, &[])?,
@@ -99,7 +111,7 @@ impl Stage {
             unpin_finish: Kernel::new(device, &[])?,
             advance: Kernel::new(device, &[])?,
             elect: Kernel::new(device, &[])?,
-            cut: arithmetic.kernels(device, &[])?,
+            cut,
             link: Kernel::new(device, &[])?,
             heirs: Kernel::new(device, &[])?,
         })
@@ -196,7 +208,7 @@ impl Stage {
         }
         let [translation_x, translation_y] = input.mapping.translation();
         let bound = buffers.sites as u32;
-        recording.repeat_ahead("pinning", buffers.word(Word::PinLeft)?, bound, 1, 1, |body| {
+        recording.repeat_ahead("pinning", buffers.word(Word::PinLeft)?, bound, 1, 2, |body| {
             for round in 0..PIN_ROUNDS {
                 let arguments = PinStarsArgs {
                     triangles,

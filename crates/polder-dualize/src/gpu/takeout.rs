@@ -24,7 +24,7 @@ impl Stage {
         let (triangles, links) = (mesh.corners(), mesh.twins());
         let (edge_of, edges) = (buffers.edge_of.view(), buffers.edges.view());
         let bound = buffers.sites as u32;
-        recording.repeat_ahead("taking out", buffers.word(Word::OutLeft)?, bound, 1, 1, |body| {
+        recording.repeat_ahead("taking out", buffers.word(Word::OutLeft)?, bound, 1, 5, |body| {
             for round in 0..OUT_ROUNDS {
                 let [waiting, later] = buffers.lists(round);
                 let arguments = TakeoutElectArgs { triangles, links, state, waiting, later, winners, words, round };
@@ -46,7 +46,7 @@ impl Stage {
                 };
                 body.dispatch(&self.cut.first, self.groups, &arguments);
                 if let Some(rest) = &self.cut.rest {
-                    body.dispatch(rest, self.rare, &TakeoutCutArgs { again: 1, ..arguments });
+                    body.dispatch(rest, self.stars, &TakeoutCutArgs { again: 1, ..arguments });
                 }
                 let arguments = TakeoutLinkArgs { triangles, links, state, edge_of, edges, words, round };
                 body.dispatch(&self.link, self.groups, &arguments);
