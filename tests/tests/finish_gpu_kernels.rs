@@ -6,13 +6,14 @@ mod finish_gpu_support;
 mod vulkan_support;
 
 use finish_gpu_support::{Case, OnDevice, Shared, cases, hub, with_device};
+use polder_canonical::gpu::Line;
 use polder_canonical::kernels::*;
 use polder_canonical::reference::kernels::{self, Lists};
-use polder_canonical::reference::{self, Check};
+use polder_canonical::reference::{self, Axis, Check};
 use polder_flip::gpu::Arithmetic;
-use polder_mesh::NONE;
+use polder_mesh::{DVec2, NONE};
 use polder_vulkan::{Kernel, Shader, groups_for};
-use vulkan_support::Gpu;
+use vulkan_support::{Gpu, words};
 
 /// Runs one kernel over so many items.
 fn run<S: Shader>(gpu: &mut Gpu, items: usize, constants: &[(&'static str, u32)], arguments: &S::Args<'_>) {
@@ -342,5 +343,95 @@ fn check_triangles() {
         let found = Check { minima: found[0], broken: found[4], clockwise: found[8], reflex: found[12] };
         let expected = reference::check_triangles(&steps.case.mesh, &steps.case.positions, finite);
         assert_eq!(found, expected, "{}", steps.case.name);
+    });
+}
+
+/// Points on lines, with duplicates, zeros of both signs, and coordinates of any size.
+fn lines() -> Vec<(Vec<DVec2>, Axis)> {
+    let mut lines = Vec::new();
+    for count in [1, 2, 3, 255, 256, 257, 3000] {
+        let words = words(count as u64, count);
+        let some = |word: u32| (f64::from(word % 700) - 350.0) * f64::from(word % 3 + 1).powi(600);
+        let x = words.iter().map(|&word| some(word) * if word & 4096 == 0 { 1.0 } else { -1.0 });
+        let points: Vec<DVec2> = x.map(|x| DVec2::new(x, -7.0)).collect();
+        lines.push((points.iter().map(|p| DVec2::new(p.y, p.x)).collect(), Axis::Y));
+        lines.push((points, Axis::X));
+        lines.push((vec![DVec2::new(3.0, -0.0); count], Axis::X));
+    }
+    lines
+}
+
+#[test]
+fn line() {
+    with_device(|Shared { gpu, .. }| {
+        for (points, axis) in lines() {
+            let line = Line::new(&gpu.device, points.len()).unwrap();
+            let (uploaded, representatives) = (gpu.buffer(&points), gpu.buffer(&vec![7_u32; points.len()]));
+            let mut recording = gpu.recording();
+            let read = line.record(&mut recording, uploaded.view(), axis, representatives.view()).unwrap();
+            let vertices = read.vertices(&gpu.run(&recording));
+            let found = (gpu.fetch(representatives.view()), vertices);
+            assert_eq!(found, reference::line(&points, axis));
+            let lowest = |p: &DVec2| points.iter().position(|q| p == q).unwrap() as u32;
+            assert_eq!(found.0, points.iter().map(lowest).collect::<Vec<_>>());
+        }
+    });
+}
+
+#[test]
+fn line_keys() {
+    with_device(|Shared { gpu, .. }| {
+        for (points, axis) in lines() {
+            let count = points.len();
+            let (input, keys) = (gpu.buffer(&points), gpu.buffer(&vec![7_u64; count]));
+            let values = gpu.buffer(&vec![7_u32; count]);
+            let arguments = LineKeysArgs {
+                points: input.view().cast(),
+                keys: keys.view(),
+                values: values.view(),
+                axis: axis as u32,
+                count: count as u32,
+            };
+            run::<LineKeys>(gpu, count, &[], &arguments);
+            assert_eq!((gpu.fetch(keys.view()), gpu.fetch(values.view())), reference::line_keys(&points, axis));
+        }
+    });
+}
+
+#[test]
+fn line_heads() {
+    with_device(|Shared { gpu, .. }| {
+        for (points, axis) in lines() {
+            let mut sorted = reference::line_keys(&points, axis).0;
+            sorted.sort_unstable();
+            let (keys, flags) = (gpu.buffer(&sorted), gpu.buffer(&vec![7_u32; sorted.len()]));
+            let arguments = LineHeadsArgs { keys: keys.view(), flags: flags.view(), count: sorted.len() as u32 };
+            run::<LineHeads>(gpu, sorted.len(), &[], &arguments);
+            assert_eq!(gpu.fetch(flags.view()), reference::line_heads(&sorted));
+        }
+    });
+}
+
+#[test]
+fn line_names() {
+    with_device(|Shared { gpu, .. }| {
+        for count in [1_u32, 2, 300, 1000] {
+            let (values, all): (Vec<u32>, Vec<u32>) = ((0..count).rev().collect(), (100..100 + count).collect());
+            let flags: Vec<u32> = words(count.into(), count as usize).iter().map(|word| word % 2).collect();
+            let flags: Vec<u32> =
+                flags.into_iter().enumerate().map(|(p, flag)| if p == 0 { 1 } else { flag }).collect();
+            let ranks = scanned(&flags);
+            let buffers = [&values, &flags, &ranks, &all, &vec![7; count as usize]].map(|data| gpu.buffer(data));
+            let arguments = LineNamesArgs {
+                values: buffers[0].view(),
+                flags: buffers[1].view(),
+                ranks: buffers[2].view(),
+                heads: buffers[3].view(),
+                representatives: buffers[4].view(),
+                count,
+            };
+            run::<LineNames>(gpu, count as usize, &[], &arguments);
+            assert_eq!(gpu.fetch(buffers[4].view()), reference::line_names(&values, &flags, &ranks, &all));
+        }
     });
 }

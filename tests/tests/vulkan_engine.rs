@@ -6,7 +6,7 @@ mod vulkan_support;
 
 use polder_vulkan::kernels::{CopyWords, CopyWordsArgs, DispatchSize, DispatchSizeArgs, ScanSums, ScanSumsArgs};
 use polder_vulkan::primitives::{Scan, Sort};
-use polder_vulkan::{Buffer, Error, Kernel, Recording, RunOptions, groups_for, reference};
+use polder_vulkan::{Buffer, Error, Kernel, Recording, RunOptions, Timings, groups_for, reference};
 use std::cell::{Cell, RefCell};
 use vulkan_support::{Gpu, words};
 
@@ -278,10 +278,11 @@ fn sections_are_timed_across_submissions() {
             let report = gpu.engine.run(&recording, &options).unwrap();
             let found: Vec<_> = report.sections.iter().map(|(name, timing)| (name, timing.total_ns > 0)).collect();
             assert_eq!(found, [("first", true), ("last", true), ("loop", true)]);
-            assert_eq!(
-                report.timings.get("scan_tiles").map_or(0, |timing| timing.count),
-                if timestamps { 5 } else { 0 }
-            );
+            let scans = |timings: &Timings| timings.get("scan_tiles").map_or(0, |timing| timing.count);
+            assert_eq!(scans(&report.timings), if timestamps { 5 } else { 0 });
+            let by_section: Vec<_> = report.by_section.iter().map(|(name, timings)| (*name, scans(timings))).collect();
+            let expected = [("first", 1), ("last", 1), ("loop", 2)];
+            assert_eq!(by_section, if timestamps { &expected[..] } else { &[] });
         }
     }
 }

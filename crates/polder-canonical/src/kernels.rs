@@ -200,6 +200,148 @@ impl Shader for ElectNames {
     }
 }
 
+/// Of sorted keys, a one for each that differs from the one before; zeros else.
+#[derive(Debug, Clone, Copy)]
+pub enum LineHeads {}
+
+/// Arguments of [`LineHeads`].
+#[derive(Debug, Clone, Copy)]
+pub struct LineHeadsArgs<'a> {
+    /// read
+    pub keys: View<'a, u64>,
+    /// written
+    pub flags: View<'a, u32>,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for LineHeads {
+    type Args<'a> = LineHeadsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "line_heads",
+        words: include_spirv!("../spv/line_heads.spv"),
+        without_float64: None,
+        argument_bytes: 20,
+        buffers: &[
+            BufferArgument { name: "keys", offset: 0, access: Access::Read },
+            BufferArgument { name: "flags", offset: 8, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "75b90c1a7a70878e13cf1adec91c0d79d465d3dc7108624989f7964ed9d92323",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.keys);
+        encoder.buffer(8, args.flags);
+        encoder.value(16, args.count);
+    }
+}
+
+/// Points on a line, by one coordinate: integers in the order of the numbers, -0.0 as 0.0; and their indices.
+#[derive(Debug, Clone, Copy)]
+pub enum LineKeys {}
+
+/// Arguments of [`LineKeys`].
+#[derive(Debug, Clone, Copy)]
+pub struct LineKeysArgs<'a> {
+    /// read
+    pub points: View<'a, u64>,
+    /// written
+    pub keys: View<'a, u64>,
+    /// written
+    pub values: View<'a, u32>,
+    /// a value
+    pub axis: u32,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for LineKeys {
+    type Args<'a> = LineKeysArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "line_keys",
+        words: include_spirv!("../spv/line_keys.spv"),
+        without_float64: None,
+        argument_bytes: 32,
+        buffers: &[
+            BufferArgument { name: "points", offset: 0, access: Access::Read },
+            BufferArgument { name: "keys", offset: 8, access: Access::Write },
+            BufferArgument { name: "values", offset: 16, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "0b40a6d5510f36508839e09eec77efcda8dbd11a42a328d785371507c98b8af6",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.points);
+        encoder.buffer(8, args.keys);
+        encoder.buffer(16, args.values);
+        encoder.value(24, args.axis);
+        encoder.value(28, args.count);
+    }
+}
+
+/// Each point of a run of equal keys is represented by the first of the run, the lowest.
+#[derive(Debug, Clone, Copy)]
+pub enum LineNames {}
+
+/// Arguments of [`LineNames`].
+#[derive(Debug, Clone, Copy)]
+pub struct LineNamesArgs<'a> {
+    /// read
+    pub values: View<'a, u32>,
+    /// read
+    pub flags: View<'a, u32>,
+    /// read
+    pub ranks: View<'a, u32>,
+    /// read
+    pub heads: View<'a, u32>,
+    /// written
+    pub representatives: View<'a, u32>,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for LineNames {
+    type Args<'a> = LineNamesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "line_names",
+        words: include_spirv!("../spv/line_names.spv"),
+        without_float64: None,
+        argument_bytes: 44,
+        buffers: &[
+            BufferArgument { name: "values", offset: 0, access: Access::Read },
+            BufferArgument { name: "flags", offset: 8, access: Access::Read },
+            BufferArgument { name: "ranks", offset: 16, access: Access::Read },
+            BufferArgument { name: "heads", offset: 24, access: Access::Read },
+            BufferArgument { name: "representatives", offset: 32, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "5c0599e10d367ab02a2745b96c404dbd3eabfdbc4036e0cc123bfb959fc69f89",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.values);
+        encoder.buffer(8, args.flags);
+        encoder.buffer(16, args.ranks);
+        encoder.buffer(24, args.heads);
+        encoder.buffer(32, args.representatives);
+        encoder.value(40, args.count);
+    }
+}
+
 /// The list of each vertex: the half-edge opposite it in each triangle, and the name of the corner after it.
 #[derive(Debug, Clone, Copy)]
 pub enum ListTriangles {}

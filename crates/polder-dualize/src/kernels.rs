@@ -1032,6 +1032,79 @@ impl Shader for PinTriangles {
     }
 }
 
+/// What insertion begins with: the sites that were taken out, each with its heir, then the missing points, each with the site
+/// that owns its pixel, or that one's heir.
+#[derive(Debug, Clone, Copy)]
+pub enum PointsToInsert {}
+
+/// Arguments of [`PointsToInsert`].
+#[derive(Debug, Clone, Copy)]
+pub struct PointsToInsertArgs<'a> {
+    /// read
+    pub taken: View<'a, u32>,
+    /// read
+    pub taken_count: View<'a, u32>,
+    /// read
+    pub heirs: View<'a, u32>,
+    /// read
+    pub sites: View<'a, u32>,
+    /// read
+    pub pixels: View<'a, u32>,
+    /// read
+    pub colors: View<'a, u32>,
+    /// written
+    pub points: View<'a, u32>,
+    /// written
+    pub starts: View<'a, u32>,
+    /// written
+    pub count: View<'a, u32>,
+    /// a value
+    pub width: u32,
+    /// a value
+    pub limit: u32,
+}
+
+impl Shader for PointsToInsert {
+    type Args<'a> = PointsToInsertArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "points_to_insert",
+        words: include_spirv!("../spv/points_to_insert.spv"),
+        without_float64: None,
+        argument_bytes: 80,
+        buffers: &[
+            BufferArgument { name: "taken", offset: 0, access: Access::Read },
+            BufferArgument { name: "taken_count", offset: 8, access: Access::Read },
+            BufferArgument { name: "heirs", offset: 16, access: Access::Read },
+            BufferArgument { name: "sites", offset: 24, access: Access::Read },
+            BufferArgument { name: "pixels", offset: 32, access: Access::Read },
+            BufferArgument { name: "colors", offset: 40, access: Access::Read },
+            BufferArgument { name: "points", offset: 48, access: Access::Write },
+            BufferArgument { name: "starts", offset: 56, access: Access::Write },
+            BufferArgument { name: "count", offset: 64, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "d1216baa07589021368d9bb6df2d74a67afa6dc49df7ee117d05b43de8cef204",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.taken);
+        encoder.buffer(8, args.taken_count);
+        encoder.buffer(16, args.heirs);
+        encoder.buffer(24, args.sites);
+        encoder.buffer(32, args.pixels);
+        encoder.buffer(40, args.colors);
+        encoder.buffer(48, args.points);
+        encoder.buffer(56, args.starts);
+        encoder.buffer(64, args.count);
+        encoder.value(72, args.width);
+        encoder.value(76, args.limit);
+    }
+}
+
 /// Shift: after a batch of rounds of pinning, unpinning or taking out, counts them and gets the words ready for the next.
 #[derive(Debug, Clone, Copy)]
 pub enum ShiftAdvance {}

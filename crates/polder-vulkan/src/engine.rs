@@ -13,6 +13,7 @@ use crate::timing::Timings;
 use crate::transfer::Staging;
 use ash::vk;
 use gpu_allocator::MemoryLocation;
+use std::collections::BTreeMap;
 use std::time::Duration;
 
 /// How to run a recording.
@@ -57,6 +58,8 @@ pub struct RunReport {
     pub timings: Timings,
     /// How long each section took, by its name: [`Recording::section`].
     pub sections: Timings,
+    /// The timestamps of each section's commands, if asked for.
+    pub by_section: BTreeMap<&'static str, Timings>,
     words: Vec<u32>,
 }
 

@@ -2,8 +2,8 @@
 
 use crate::Error;
 use crate::device::DeviceInner;
+use crate::engine::RunReport;
 use crate::error::Called;
-use crate::timing::Timings;
 use ash::vk;
 use std::sync::Arc;
 
@@ -73,7 +73,7 @@ impl Queries {
     }
 
     /// Reads what a finished submission wrote.
-    pub(crate) fn collect(&mut self, timings: &mut Timings, sections: &mut Timings) -> Result<(), Error> {
+    pub(crate) fn collect(&mut self, report: &mut RunReport) -> Result<(), Error> {
         if self.used == 0 {
             return Ok(());
         }
@@ -89,10 +89,16 @@ impl Queries {
         for entry in &self.entries {
             let Some(tick) = ticks.next() else { break };
             match *entry {
-                Entry::Command(name) => timings.add(name, ns(tick, ticks.next().unwrap_or(tick))),
+                Entry::Command(name) => {
+                    let ns = ns(tick, ticks.next().unwrap_or(tick));
+                    report.timings.add(name, ns);
+                    if let Some((section, _)) = open {
+                        report.by_section.entry(section).or_default().add(name, ns);
+                    }
+                }
                 Entry::Section(name) => {
                     if let Some((before, from)) = open.take() {
-                        sections.add(before, ns(from, tick));
+                        report.sections.add(before, ns(from, tick));
                     }
                     open = name.map(|name| (name, tick));
                 }

@@ -300,7 +300,7 @@ impl<'e, 'o> Run<'e, 'o> {
             }
         }
         if let Some(queries) = &mut self.engine.queries {
-            queries.collect(&mut self.report.timings, &mut self.report.sections)?;
+            queries.collect(&mut self.report)?;
         }
         match halt {
             Some(place) => self.look(self.engine.word(place)),

@@ -13,9 +13,11 @@
 //! 5. *Certificate* (module [`reference`](crate::reference)): one look at each triangle and the ones next to it.
 
 mod buffers;
+mod line;
 mod record;
 
 pub use buffers::{Buffers, Counts, CountsRead};
+pub use line::{Line, LineRead};
 pub use record::Input;
 
 use crate::kernels::*;

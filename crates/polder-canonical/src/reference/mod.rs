@@ -2,8 +2,10 @@
 
 mod check;
 pub mod kernels;
+mod line;
 
 pub use check::{Check, certify, check_triangles};
+pub use line::{Axis, line, line_heads, line_keys, line_names};
 
 use polder_mesh::{GhostMesh, NONE};
 

@@ -5,3 +5,4 @@ pub mod insert;
 pub mod shift;
 mod shift_buffers;
 mod takeout;
+pub mod to_insert;
