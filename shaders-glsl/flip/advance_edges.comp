@@ -17,6 +17,7 @@ layout(push_constant, std430) uniform Args {
     MaybeU32 also_count;
     U32 words;
     U32 report;
+    uint stride;
     uint also_limit;
     uint scope;
     uint parity; // of this round
@@ -54,7 +55,7 @@ void main() {
                 if (k < 2u) {
                     state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
                 }
-                handed = renew(links, state, round, side_of(h, g, k));
+                handed = renew(links, state, stride, round, side_of(h, g, k));
                 if (handed.some) {
                     uint b = origin(triangles, handed.side);
                     uint c = destination(triangles, handed.side);
@@ -67,7 +68,7 @@ void main() {
                     }
                 }
             } else if (k == 0u) {
-                handed = leave(links, state, parity, round, h);
+                handed = leave(links, state, stride, parity, round, h);
                 illegal_edge = handed.some;
                 tests += uint(handed.some);
             }
@@ -75,7 +76,7 @@ void main() {
         uint lower = min(handed.side, handed.outer);
         uint place = place_in(words, ILLEGAL_COUNT(parity ^ 1u), illegal_edge);
         if (illegal_edge) {
-            claim(state, parity ^ 1u, lower, max(handed.side, handed.outer));
+            claim(state, stride, parity ^ 1u, lower, max(handed.side, handed.outer));
             next_illegal.at[place] = lower;
         }
         if (present(also)) {

@@ -14,6 +14,7 @@ layout(push_constant, std430) uniform Args {
     MaybeU32 listed; // whose bits are cleared
     U32 words;
     U32 report;
+    uint stride;
     uint limit; // edges that the list takes
     uint least; // fewer illegal edges are left to another kernel
     uint parity;
@@ -36,7 +37,7 @@ void main() {
         if (state.at[CLAIM(h, parity)] == mine) {
             uint g = links.at[h];
             if (state.at[CLAIM(g, parity)] == mine) {
-                flip_pair(triangles, links, state, round, h, g);
+                flip_pair(triangles, links, state, stride, round, h, g);
                 illegal.at[i] = h | WON;
                 flips++;
             }

@@ -17,6 +17,7 @@ layout(push_constant, std430) uniform Args {
     MaybeU32 also_count;
     SharedU32 words;
     SharedU32 report;
+    uint stride;
     uint also_limit;
     uint scope;
     uint least; // so many illegal edges are left to other kernels, four times as many once it has begun
@@ -79,7 +80,7 @@ void main() {
             bool first = state.at[CLAIM(h, parity)] == mine;
             bool second = state.at[CLAIM(g, parity)] == mine;
             if (first && second) {
-                flip_pair(triangles, links, state, round, h, g);
+                flip_pair(triangles, links, state, stride, round, h, g);
                 atomicAdd(flips, 1u);
                 if (near) {
                     near_lower[parity * NEAR + i] = h | WON;
@@ -102,7 +103,7 @@ void main() {
                 if (k < 2u) {
                     state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
                 }
-                handed = renew(links, state, round, side_of(h, g, k));
+                handed = renew(links, state, stride, round, side_of(h, g, k));
                 if (handed.some) {
                     uint b = origin(triangles, handed.side);
                     uint c = destination(triangles, handed.side);
@@ -115,7 +116,7 @@ void main() {
                     }
                 }
             } else if (k == 0u) {
-                handed = leave(links, state, parity, round, h);
+                handed = leave(links, state, stride, parity, round, h);
                 if (handed.some) {
                     atomicAdd(tests, 1u);
                     illegal_edge = true;
@@ -124,7 +125,7 @@ void main() {
             if (illegal_edge) {
                 uint lower = min(handed.side, handed.outer);
                 uint upper = max(handed.side, handed.outer);
-                claim(state, parity ^ 1u, lower, upper);
+                claim(state, stride, parity ^ 1u, lower, upper);
                 uint place = atomicAdd(next_count[parity], 1u);
                 if (place < NEAR) {
                     near_lower[(parity ^ 1u) * NEAR + place] = lower;

@@ -11,6 +11,7 @@ layout(push_constant, std430) uniform Args {
     WriteU32 edges;
     U32 edge_count;
     U32 words;
+    uint stride;
     uint limit; // edges that the list takes
     uint parity;
 };
@@ -35,9 +36,9 @@ void main() {
                 if (k < 2u) {
                     state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
                 }
-                handed = renew(links, state, round, side_of(h, g, k));
+                handed = renew(links, state, stride, round, side_of(h, g, k));
             } else if (k == 0u) {
-                handed = leave(links, state, parity, round, h);
+                handed = leave(links, state, stride, parity, round, h);
             }
         }
         uint place = place_in(edge_count, 0u, handed.some);

@@ -56,13 +56,14 @@ void add_wide(WORDS words, uint at, uint value) {
     }
 }
 
-// By triangle, three words of state: the least priority that claims it, in even and in odd rounds, else NONE; and its stamp:
-// four times the last round that flipped it, plus the edge along which it was.
-#define CLAIM(H, PARITY) ((H) / 3u * 3u + (PARITY))
-#define STAMP(H) ((H) / 3u * 3u + 2u)
+// State is three arrays of `stride` words: by triangle the least priority that claims it, in even and in odd rounds, else NONE;
+// and its stamp, four times the last round that flipped it, plus the edge along which it was. (Three words side by side
+// made rounds slower by a fifth: neighbors' claims share sectors.)
+#define CLAIM(H, PARITY) ((PARITY) * stride + (H) / 3u)
+#define STAMP(H) (2u * stride + (H) / 3u)
 
 // Step 2: an illegal edge claims its two triangles, in the name of its lower half-edge.
-void claim(WORDS state, uint parity, uint lower, uint upper) {
+void claim(WORDS state, uint stride, uint parity, uint lower, uint upper) {
     uint mine = priority(lower);
     atomicMin(state.at[CLAIM(lower, parity)], mine);
     atomicMin(state.at[CLAIM(upper, parity)], mine);
@@ -70,7 +71,7 @@ void claim(WORDS state, uint parity, uint lower, uint upper) {
 
 // Step 3, first half: flips h, whose twin is g, if it has both its triangles; then nobody else touches their links. Outer
 // links keep the names that they had before the round.
-void flip_pair(WORDS triangles, WORDS links, WORDS state, uint round, uint h, uint g) {
+void flip_pair(WORDS triangles, WORDS links, WORDS state, uint stride, uint round, uint h, uint g) {
     uint h1 = next_edge(h);
     uint g1 = next_edge(g);
     uint t_outer = links.at[h1];
@@ -104,7 +105,7 @@ uint side_of(uint h, uint g, uint k) {
 // Step 3, second half, after all flips of the round: renews the link of an outer side. The outer edge behind the flipped one
 // went over to the other triangle, on this side as on the far side. An edge between two flips is renewed and handed on by
 // both sides alike, but only the lower one hands it on.
-Handed renew(WORDS links, WORDS state, uint round, uint side) {
+Handed renew(WORDS links, WORDS state, uint stride, uint round, uint side) {
     Handed handed;
     handed.side = side;
     uint outer = links.at[side];
@@ -126,7 +127,7 @@ Handed renew(WORDS links, WORDS state, uint round, uint side) {
 
 // The same for an illegal edge that was not flipped: it stays active, unless a flip beside it hands it on. It gives back what
 // it claimed. A link that another invocation renews meanwhile leads to the same triangles before and after.
-Handed leave(WORDS links, WORDS state, uint parity, uint round, uint h) {
+Handed leave(WORDS links, WORDS state, uint stride, uint parity, uint round, uint h) {
     uint stamp = state.at[STAMP(h)];
     bool flipped = stamp >> 2 == round;
     uint side = h;

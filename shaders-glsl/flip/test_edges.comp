@@ -16,6 +16,7 @@ layout(push_constant, std430) uniform Args {
     WriteU32 illegal;
     U32 words;
     U32 report;
+    uint stride;
     uint limit; // edges that the list takes
     uint scope;
     uint parity;
@@ -70,7 +71,7 @@ void main() {
         }
         uint place = place_in(words, ILLEGAL_COUNT(parity), illegal_edge);
         if (illegal_edge) {
-            claim(state, parity, h, g);
+            claim(state, stride, parity, h, g);
             illegal.at[place] = h;
         }
     }

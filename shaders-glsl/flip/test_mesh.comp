@@ -14,6 +14,7 @@ layout(push_constant, std430) uniform Args {
     U32 words;
     U32 report;
     ReadU32 slots;
+    uint stride;
     uint scope;
     uint parity;
 };
@@ -78,7 +79,7 @@ void main() {
         }
         uint to = place_in(words, ILLEGAL_COUNT(parity), illegal_edge);
         if (illegal_edge) {
-            claim(state, parity, h, links.at[h]);
+            claim(state, stride, parity, h, links.at[h]);
             illegal.at[to] = h;
         }
     }

@@ -120,10 +120,11 @@ fn run<S: Shader>(gpu: &mut Gpu, constants: &[(&'static str, u32)], groups: u32,
     gpu.run(&recording);
 }
 
-/// The words of state by triangle; nothing is claimed in rounds of the other parity.
+/// The three arrays of state; nothing is claimed in rounds of the other parity.
 fn state_of(scratch: &Scratch, parity: usize) -> Vec<u32> {
-    let row = |(&claim, &stamp)| if parity == 0 { [claim, NONE, stamp] } else { [NONE, claim, stamp] };
-    scratch.claims.iter().zip(&scratch.stamps).flat_map(row).collect()
+    let nothing = vec![NONE; scratch.claims.len()];
+    let claims = if parity == 0 { [&scratch.claims, &nothing] } else { [&nothing, &scratch.claims] };
+    [claims[0].as_slice(), claims[1], &scratch.stamps].concat()
 }
 
 fn sorted(mut list: Vec<u32>) -> Vec<u32> {
@@ -152,6 +153,7 @@ fn test_mesh() {
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
                 state: on.state.view(),
+                stride: case.mesh.slots() as u32,
                 illegal: on.out.view(),
                 words: on.words.view(),
                 report: on.report.view(),
@@ -188,6 +190,7 @@ fn test_edges() {
                 edge_count: on.list_count.view(),
                 listed: on.listed.view(),
                 state: on.state.view(),
+                stride: case.mesh.slots() as u32,
                 illegal: on.out.view(),
                 words: on.words.view(),
                 report: on.report.view(),
@@ -220,6 +223,7 @@ fn flip_edges() {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
             state: on.state.view(),
+            stride: case.mesh.slots() as u32,
             illegal: on.list.view(),
             edges: Some(tested.view()),
             edge_count: Some(on.list_count.view()),
@@ -263,6 +267,7 @@ fn relink_edges() {
         let arguments = RelinkEdgesArgs {
             links: on.mesh.twins(),
             state: on.state.view(),
+            stride: case.mesh.slots() as u32,
             illegal: on.list.view(),
             edges: on.out.view(),
             edge_count: on.list_count.view(),
@@ -299,6 +304,7 @@ fn advance_edges() {
             links: on.mesh.twins(),
             positions: on.mesh.positions().cast(),
             state: on.state.view(),
+            stride: case.mesh.slots() as u32,
             illegal: on.list.view(),
             next_illegal: on.out.view(),
             also: Some(on.also.view()),
@@ -338,6 +344,7 @@ fn flip_tail() {
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
                 state: on.state.view(),
+                stride: case.mesh.slots() as u32,
                 illegal_0: lists[0].view(),
                 illegal_1: lists[1].view(),
                 also: None,

@@ -32,6 +32,8 @@ pub struct AdvanceEdgesArgs<'a> {
     /// read and written
     pub report: View<'a, u32>,
     /// a value
+    pub stride: u32,
+    /// a value
     pub also_limit: u32,
     /// a value
     pub scope: u32,
@@ -46,7 +48,7 @@ impl Shader for AdvanceEdges {
         name: "advance_edges",
         words: include_spirv!("../spv/advance_edges.spv"),
         without_float64: Some(include_spirv!("../spv/advance_edges.integers.spv")),
-        argument_bytes: 92,
+        argument_bytes: 96,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
@@ -72,7 +74,7 @@ impl Shader for AdvanceEdges {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "c9e6f0e13992d45e89ccac3eaa6234bdf96a8418887d9a13810a62b049462d86",
+        source_hash: "2fb3c2ad700a6ba7ab790ac48496d7f9ddb8fbe07125d5b2c1a87d2e78d1a156",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -87,9 +89,10 @@ impl Shader for AdvanceEdges {
         encoder.optional(56, args.also_count);
         encoder.buffer(64, args.words);
         encoder.buffer(72, args.report);
-        encoder.value(80, args.also_limit);
-        encoder.value(84, args.scope);
-        encoder.value(88, args.parity);
+        encoder.value(80, args.stride);
+        encoder.value(84, args.also_limit);
+        encoder.value(88, args.scope);
+        encoder.value(92, args.parity);
     }
 }
 
@@ -120,6 +123,8 @@ pub struct FlipEdgesArgs<'a> {
     /// read and written
     pub report: View<'a, u32>,
     /// a value
+    pub stride: u32,
+    /// a value
     pub limit: u32,
     /// a value
     pub least: u32,
@@ -134,7 +139,7 @@ impl Shader for FlipEdges {
         name: "flip_edges",
         words: include_spirv!("../spv/flip_edges.spv"),
         without_float64: None,
-        argument_bytes: 84,
+        argument_bytes: 88,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
@@ -149,7 +154,7 @@ impl Shader for FlipEdges {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "ce08d3b6573d50a44b7bba40f3b2fc90b98ef512675c8faaf3237debba7042f1",
+        source_hash: "35cafe72cf4fd101e5a63bc864c15f346c2a0525534ebeb849887f3e905b2881",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -163,9 +168,10 @@ impl Shader for FlipEdges {
         encoder.optional(48, args.listed);
         encoder.buffer(56, args.words);
         encoder.buffer(64, args.report);
-        encoder.value(72, args.limit);
-        encoder.value(76, args.least);
-        encoder.value(80, args.parity);
+        encoder.value(72, args.stride);
+        encoder.value(76, args.limit);
+        encoder.value(80, args.least);
+        encoder.value(84, args.parity);
     }
 }
 
@@ -199,6 +205,8 @@ pub struct FlipTailArgs<'a> {
     /// read and written
     pub report: View<'a, u32>,
     /// a value
+    pub stride: u32,
+    /// a value
     pub also_limit: u32,
     /// a value
     pub scope: u32,
@@ -217,7 +225,7 @@ impl Shader for FlipTail {
         name: "flip_tail",
         words: include_spirv!("../spv/flip_tail.spv"),
         without_float64: Some(include_spirv!("../spv/flip_tail.integers.spv")),
-        argument_bytes: 100,
+        argument_bytes: 104,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
@@ -236,7 +244,7 @@ impl Shader for FlipTail {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "ef7b145a95ca48e04a6c2703eb36792435d7d1384f43f5ff097c3e36ef7e9d0d",
+        source_hash: "3fd5f1183a8638af7af6e9acece8b037cd0413cc1cae2e17ac0ee1d948e83a66",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -251,11 +259,12 @@ impl Shader for FlipTail {
         encoder.optional(56, args.also_count);
         encoder.buffer(64, args.words);
         encoder.buffer(72, args.report);
-        encoder.value(80, args.also_limit);
-        encoder.value(84, args.scope);
-        encoder.value(88, args.least);
-        encoder.value(92, args.most);
-        encoder.value(96, args.most_tests);
+        encoder.value(80, args.stride);
+        encoder.value(84, args.also_limit);
+        encoder.value(88, args.scope);
+        encoder.value(92, args.least);
+        encoder.value(96, args.most);
+        encoder.value(100, args.most_tests);
     }
 }
 
@@ -377,6 +386,8 @@ pub struct RelinkEdgesArgs<'a> {
     /// read and written
     pub words: View<'a, u32>,
     /// a value
+    pub stride: u32,
+    /// a value
     pub limit: u32,
     /// a value
     pub parity: u32,
@@ -389,7 +400,7 @@ impl Shader for RelinkEdges {
         name: "relink_edges",
         words: include_spirv!("../spv/relink_edges.spv"),
         without_float64: None,
-        argument_bytes: 56,
+        argument_bytes: 60,
         buffers: &[
             BufferArgument { name: "links", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "state", offset: 8, access: Access::ReadWrite },
@@ -401,7 +412,7 @@ impl Shader for RelinkEdges {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "ee23d3ef1841b5a45b3ac483dffe32c45f5616ab95acd7b47f5444fba8b4481e",
+        source_hash: "0efb449b1dfbc449f8560c2f207e623a3cae74bfc2c5c3be0bf91d8ee2c05cfc",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -412,8 +423,9 @@ impl Shader for RelinkEdges {
         encoder.buffer(24, args.edges);
         encoder.buffer(32, args.edge_count);
         encoder.buffer(40, args.words);
-        encoder.value(48, args.limit);
-        encoder.value(52, args.parity);
+        encoder.value(48, args.stride);
+        encoder.value(52, args.limit);
+        encoder.value(56, args.parity);
     }
 }
 
@@ -446,6 +458,8 @@ pub struct TestEdgesArgs<'a> {
     /// read and written
     pub report: View<'a, u32>,
     /// a value
+    pub stride: u32,
+    /// a value
     pub limit: u32,
     /// a value
     pub scope: u32,
@@ -460,7 +474,7 @@ impl Shader for TestEdges {
         name: "test_edges",
         words: include_spirv!("../spv/test_edges.spv"),
         without_float64: Some(include_spirv!("../spv/test_edges.integers.spv")),
-        argument_bytes: 92,
+        argument_bytes: 96,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -486,7 +500,7 @@ impl Shader for TestEdges {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "ea556e01b023b7726d37ae1c6aace43eb71a48e52804092ccb59512897e4c30a",
+        source_hash: "71bb44ae7e0387b1924c3c2f79a747f4d6a0eb55a32811832c63b4cf82b2bc3b",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -501,9 +515,10 @@ impl Shader for TestEdges {
         encoder.buffer(56, args.illegal);
         encoder.buffer(64, args.words);
         encoder.buffer(72, args.report);
-        encoder.value(80, args.limit);
-        encoder.value(84, args.scope);
-        encoder.value(88, args.parity);
+        encoder.value(80, args.stride);
+        encoder.value(84, args.limit);
+        encoder.value(88, args.scope);
+        encoder.value(92, args.parity);
     }
 }
 
@@ -532,6 +547,8 @@ pub struct TestMeshArgs<'a> {
     /// read
     pub slots: View<'a, u32>,
     /// a value
+    pub stride: u32,
+    /// a value
     pub scope: u32,
     /// a value
     pub parity: u32,
@@ -544,7 +561,7 @@ impl Shader for TestMesh {
         name: "test_mesh",
         words: include_spirv!("../spv/test_mesh.spv"),
         without_float64: Some(include_spirv!("../spv/test_mesh.integers.spv")),
-        argument_bytes: 72,
+        argument_bytes: 76,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -568,7 +585,7 @@ impl Shader for TestMesh {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "1702bda400535e4ec2968c9e7e9aa0d543a829870dce535c0cae31f17f567df0",
+        source_hash: "84c15013b8df63c01af0f31a1f14137c7d9a465f4bb2c9bac4874ef7e5a74871",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -581,7 +598,8 @@ impl Shader for TestMesh {
         encoder.buffer(40, args.words);
         encoder.buffer(48, args.report);
         encoder.buffer(56, args.slots);
-        encoder.value(64, args.scope);
-        encoder.value(68, args.parity);
+        encoder.value(64, args.stride);
+        encoder.value(68, args.scope);
+        encoder.value(72, args.parity);
     }
 }

@@ -102,9 +102,9 @@ impl TallyRead {
 #[derive(Debug)]
 pub struct Buffers {
     pub(super) slots: usize,
-    /// By triangle: the least priority that claims it, in even and in odd rounds; the last round that flipped it, and along
-    /// which edge.
-    pub(super) state: Buffer<[u32; 3]>,
+    /// By triangle: the least priority that claims it, in even rounds and again in odd ones; and again, the last round that
+    /// flipped it, and along which edge.
+    pub(super) state: Buffer<u32>,
     /// A bit for each half-edge: whether it was met in this round.
     pub(super) listed: Buffer<u32>,
     /// Illegal edges of even rounds.
@@ -125,7 +125,7 @@ fn listed_of(slots: usize) -> usize {
 
 pub(super) fn estimate(slots: usize) -> Estimate {
     Estimate::new()
-        .buffer::<[u32; 3]>("state", slots)
+        .buffer::<u32>("state", 3 * slots)
         .buffer::<u32>("listed", listed_of(slots))
         .buffer::<u32>("illegal", edges_of(slots))
         .and(EdgeList::estimate(edges_of(slots)))
@@ -138,7 +138,7 @@ impl Buffers {
         let words = |name, len| Buffer::<u32>::new(device, name, len);
         Ok(Self {
             slots,
-            state: Buffer::new(device, "state", slots)?,
+            state: words("state", 3 * slots)?,
             listed: words("listed", listed_of(slots))?,
             illegal: words("illegal", edges_of(slots))?,
             list: EdgeList::new(device, edges_of(slots))?,

@@ -1,5 +1,33 @@
 //! The stage on the device, bit for bit what [`reference`](mod@crate::reference) gives, and the working mesh that stages
-//! share there.
+//! share there. \[QCT\] section 3.5.
+//!
+//! [`Stage`] holds the kernels, [`Buffers`] the memory for one number of slots, [`Mesh`] what is flipped. A round:
+//!
+//! 1. *Test and claim.* Illegal edges are listed, and claim their two triangles by an atomic minimum of the priority. The
+//!    first round reads the whole mesh, some triangles a workgroup, which gathers the edges of which they are the lower side
+//!    and tests those without idle invocations.
+//! 2. *Flip.* An edge that has both its triangles is flipped: their corners and links are nobody else's to write. Links
+//!    outward keep the names that the neighbors had before the round; a stamp on each triangle says that it was flipped in
+//!    this round, and along which edge.
+//! 3. *Renew and test again.* From a neighbor's stamp follows where the edge between is now: a flip moves two of its four
+//!    outer edges to the other triangle. Each side writes its own link, and that of a neighbor that was not flipped. The
+//!    edge so renewed is tested at once, which is step 1 of the next round: its corners, final since step 2, are at hand. An
+//!    edge between two flips is renewed by both and tested by one, so no list ever holds an edge twice.
+//!
+//! A round is therefore two dispatches. [`Stage::record_flip`] repeats some of them and a *tail*: once few edges are
+//! illegal, whole rounds run inside one workgroup, with their list in shared memory. Which kernel makes a round cannot be
+//! told from the result.
+//!
+//! [`Stage::record_round`] makes a single round over a list to which other kernels append in any order, also repeatedly
+//! (`edge_list.glsl`); a bit for each half-edge sorts out repetitions. [`Stage::record_close_hull`] makes ghost flips alone.
+//!
+//! Departures from the paper, beside those of the reference: rounds are not separated by the host; a claim is the minimum
+//! of a hash; links are renewed from stamps, not through an array of messages; what is listed is edges.
+//!
+//! # Cost
+//!
+//! Memory: 24.4 bytes a slot beside the mesh, which is 49 a point. A flip reads and writes, in two dispatches, the rows of
+//! its two triangles and of up to four neighbors: corners, links, state and positions, about 40 sectors of 32 bytes.
 
 mod buffers;
 mod mesh;

@@ -43,7 +43,7 @@ struct Round<'a> {
 impl Stage {
     /// To be recorded once before rounds over these buffers.
     pub fn record_start(&self, recording: &mut Recording, buffers: &Buffers) {
-        recording.fill(buffers.state.view().cast(), NONE);
+        recording.fill(buffers.state.view(), NONE);
         recording.fill(buffers.listed.view(), 0);
         recording.fill(buffers.words.view(), 0);
     }
@@ -62,12 +62,12 @@ impl Stage {
         tally: &Tally,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "flip")?;
-        recording.fill(buffers.state.view().cast(), NONE);
+        recording.fill(buffers.state.view(), NONE);
         recording.fill(buffers.words.view(), 0);
         let round = Round { mesh, buffers, also: None, tally, scope: Scope::All };
         self.test_mesh(recording, round);
         let bound = u32::try_from(round_bound(mesh.capacity())).unwrap_or(u32::MAX);
-        recording.repeat_ahead("flip", buffers.pending()?, bound, 1, 1, |body| {
+        recording.repeat_ahead("flip", buffers.pending()?, bound, 1, 3, |body| {
             for turn in 0..WIDE {
                 self.advance(body, round, turn % 2, FEW);
             }
@@ -96,7 +96,8 @@ impl Stage {
         self.flip(recording, round, Some(list), 0, 0);
         let arguments = RelinkEdgesArgs {
             links: mesh.twins(),
-            state: buffers.state.view().cast(),
+            state: buffers.state.view(),
+            stride: buffers.slots as u32,
             illegal: buffers.illegal(0),
             edges: list.edges(),
             edge_count: list.count(),
@@ -161,7 +162,8 @@ impl Stage {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            state: buffers.state.view().cast(),
+            state: buffers.state.view(),
+            stride: buffers.slots as u32,
             illegal: buffers.illegal(0),
             words: buffers.words.view(),
             report: tally.words(),
@@ -182,7 +184,8 @@ impl Stage {
             edges: list.edges(),
             edge_count: list.count(),
             listed: buffers.listed.view(),
-            state: buffers.state.view().cast(),
+            state: buffers.state.view(),
+            stride: buffers.slots as u32,
             illegal: buffers.illegal(0),
             words: buffers.words.view(),
             report: tally.words(),
@@ -198,7 +201,8 @@ impl Stage {
         let arguments = FlipEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
-            state: buffers.state.view().cast(),
+            state: buffers.state.view(),
+            stride: buffers.slots as u32,
             illegal: buffers.illegal(parity),
             edges: list.map(EdgeList::edges),
             edge_count: list.map(EdgeList::count),
@@ -218,7 +222,8 @@ impl Stage {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            state: buffers.state.view().cast(),
+            state: buffers.state.view(),
+            stride: buffers.slots as u32,
             illegal: buffers.illegal(parity),
             next_illegal: buffers.illegal(1 - parity),
             also: also.map(EdgeList::edges),
@@ -238,7 +243,8 @@ impl Stage {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            state: buffers.state.view().cast(),
+            state: buffers.state.view(),
+            stride: buffers.slots as u32,
             illegal_0: buffers.illegal(0),
             illegal_1: buffers.illegal(1),
             also: also.map(EdgeList::edges),
