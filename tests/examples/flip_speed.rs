@@ -67,8 +67,8 @@ fn start_of(family: &str, count: usize) -> Result<(Vec<DVec2>, GhostMesh), Box<d
         sites.pixels[..sites.count].iter().map(|pixel| voronoi.mapping.center(pixel.map(u32::from))).collect();
     let dualized = dualize::dualize(&voronoi.diagram, sites)?;
     let shifted = dualize::shift(dualized.mesh, &centers, &positions)?;
-    let (missing, starts) = dualize::points_to_insert(&voronoi.diagram, sites, &shifted);
-    let inserted = dualize::insert(shifted.mesh, &positions, &missing, &starts)?;
+    let new = dualize::points_to_insert(&voronoi.diagram, sites, &shifted);
+    let inserted = dualize::insert(shifted.mesh, &positions, &new)?;
     Ok((positions, inserted.mesh))
 }
 
