@@ -37,7 +37,7 @@ use crate::kernels::*;
 use polder_vulkan::{Device, Error, Estimate, Kernel};
 use record::ROWS;
 
-/// Lengths that change the time and nothing else.
+/// Lengths that change the time and nothing else. How the defaults were chosen is told, with figures, in the crate's README.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Tuning {
     /// How far the search around a pixel goes: a multiple of 4, at most 28. With 0 all is left to the bands.
@@ -54,7 +54,7 @@ pub struct Tuning {
 
 impl Default for Tuning {
     fn default() -> Self {
-        Self { radius: 24, rows: 62, columns: 32, tile_lanes: 256, row_lanes: 64 }
+        Self { radius: 24, rows: 62, columns: 32, tile_lanes: 256, row_lanes: 32 }
     }
 }
 
