@@ -43,7 +43,7 @@ pub(super) enum Planned {
 /// Results and scratch memory of the stage, for one number of points and one size of the grid.
 ///
 /// Results are what [`Sites`](crate::Sites) and [`Diagram`](crate::Diagram) hold, under the same names. Scratch memory is
-/// two words and half a byte a pixel and, beside the sort, one word and a quarter byte a point.
+/// two words and about a byte a pixel and, beside the sort, a word and a quarter byte a point.
 #[derive(Debug)]
 pub struct Buffers {
     pub(super) points: usize,
