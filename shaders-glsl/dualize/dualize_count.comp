@@ -41,11 +41,14 @@ void note(uint place, uvec4 ballot) {
     }
 }
 
-// The colors left and right of a column, of which the left one is the right one of the invocation before; but for the first
-// invocation, which is given it.
-uvec2 pair(uint east, uint first_west) {
+// The colors of the pixels left and right of x, of which the left one is the right one of the invocation before.
+uvec2 pair(uint x, uint y) {
+    uint east = color_of(colors, x, y, width, height);
     uint west = subgroupShuffleUp(east, 1u);
-    return uvec2(gl_SubgroupInvocationID == 0u ? first_west : west, east);
+    if (gl_SubgroupInvocationID == 0u) {
+        west = color_of(colors, x - 1u, y, width, height);
+    }
+    return uvec2(west, east);
 }
 
 void main() {
@@ -61,17 +64,10 @@ void main() {
     uint bad_corner = GHOST;
     uint bad_pixel = GHOST;
     bool at_border = first.x == 0u || first.y == 0u || first.x + WORKGROUP > width || first.y + ROWS > height;
-    // All reads first, so that they are under way together.
-    uint east[ROWS + 1u];
-    uint west[ROWS + 1u];
-    [[unroll]] for (uint row = 0u; row <= ROWS; row++) {
-        east[row] = color_of(colors, x, first.y + row - 1u, width, height);
-        west[row] = gl_SubgroupInvocationID == 0u ? color_of(colors, x - 1u, first.y + row - 1u, width, height) : 0u;
-    }
-    uvec2 south = pair(east[0], west[0]);
+    uvec2 south = pair(x, first.y - 1u);
     [[unroll]] for (uint row = 0u; row < ROWS; row++) {
         uint y = first.y + row;
-        uvec2 north = pair(east[row + 1u], west[row + 1u]);
+        uvec2 north = pair(x, y);
         if (north.y >= count && x < width && y < height) {
             bad_pixel = min(bad_pixel, y * width + x);
         }

@@ -114,7 +114,7 @@ impl Shader for DualizeCount {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "9780c5975cb6f3b5c06f9231929d24731e5f8f1949664982c05b2f288d357cbf",
+        source_hash: "06818d3db4b309c7a7c69ab31de0e600cfb31fbbfc9266b5a2a92833b996e057",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
