@@ -119,6 +119,14 @@ pub(crate) struct WayArgs {
     pub(crate) max_crossings: usize,
 }
 
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CrossingChoice {
+    /// An error, which names all pairs
+    Error,
+    /// Cut there, at new points
+    Split,
+}
+
 #[derive(Args)]
 pub(crate) struct TriangulateArgs {
     #[command(flatten)]
@@ -132,6 +140,11 @@ pub(crate) struct TriangulateArgs {
     /// The format of the output, where its extension does not say: ele, tri, obj, ply, vtk or svg
     #[arg(long, value_name = "FORMAT")]
     pub(crate) to: Option<MeshFormat>,
+
+    /// What becomes of segments that cross where no point is. New points follow the input's, in the order of rounds, x, y;
+    /// with .ele, --node writes where they are
+    #[arg(long, value_name = "POLICY", default_value = "error")]
+    pub(crate) crossings: CrossingChoice,
 
     /// Leave out what lies outside all outlines, and the holes that a .poly names: what segments do not hold back is
     /// eaten from the hull and from each hole

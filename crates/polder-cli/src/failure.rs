@@ -92,6 +92,7 @@ impl Failure {
             | "non_finite_coordinate"
             | "crossing_constraints"
             | "seed_on_constraint"
+            | "split_unfinished"
             | "too_large" => 1,
             "cancelled" => 4,
             _ => 3,

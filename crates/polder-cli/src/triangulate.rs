@@ -1,10 +1,10 @@
 //! `polder triangulate` and `polder digest`.
 
-use crate::args::{DigestArgs, TriangulateArgs, WayArgs};
+use crate::args::{CrossingChoice, DigestArgs, TriangulateArgs, WayArgs};
 use crate::failure::Failure;
 use crate::job::{DASH, Job, WriteTo, format_of, usage};
 use crate::verify::named_mesh;
-use polder::{Options, Output, Triangulation};
+use polder::{CrossingPolicy, Options, Output, Pslg, Triangulation};
 use polder_io::{Input, MeshFormat};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -19,12 +19,20 @@ pub(crate) fn triangulate(job: &Job, args: &TriangulateArgs) -> Result<ExitCode,
     if !args.domain && input.has_holes_or_closed_outline() {
         job.say("polder: the whole convex hull is triangulated; --domain keeps to outlines and holes");
     }
-    let mut output = compute(job, &input, &args.way)?;
+    let crossings = match args.crossings {
+        CrossingChoice::Error => CrossingPolicy::Error,
+        CrossingChoice::Split => CrossingPolicy::Split,
+    };
+    let mut output = compute_with(job, &input, &args.way, crossings)?;
     if args.domain {
         keep_domain(job, &input, &mut output)?;
     }
     let Output { triangulation, report } = output;
 
+    let input = with_added(input, &triangulation)?;
+    if !triangulation.added().is_empty() && to == MeshFormat::Ele && !args.node {
+        job.say("polder: points were added where segments cross; --node writes all points beside the .ele");
+    }
     let points = input.pslg.points();
     let main: Box<WriteTo> = match to {
         MeshFormat::Ele => Box::new(|out| polder_io::write_ele(out, &triangulation, input.first)),
@@ -92,6 +100,7 @@ fn summary(report: &polder::Report) -> String {
     ];
     for (count, what) in [
         (report.points.duplicates, "duplicate points"),
+        (report.points.added, "points added where segments cross"),
         (report.constraints.repeated.len(), "repeated segments"),
         (report.constraints.zero_length.len(), "segments of no length"),
     ] {
@@ -116,15 +125,37 @@ fn refuse_overwriting_input(input: &Path, files: &[(PathBuf, &WriteTo<'_>)]) {
     }
 }
 
-/// Triangulates with the bar and the cancel flag at work.
+/// The input with the added vertices among its points; their attributes and markers are zero.
+fn with_added(mut input: Input, triangulation: &Triangulation) -> Result<Input, Failure> {
+    let added = triangulation.added();
+    if added.is_empty() {
+        return Ok(input);
+    }
+    let (mut points, constraints) = input.pslg.into_parts();
+    points.extend(added.iter().map(|vertex| vertex.position));
+    input.attributes.resize(points.len() * input.attributes_per_point, 0.0);
+    if let Some(markers) = &mut input.point_markers {
+        markers.resize(points.len(), 0);
+    }
+    input.pslg = Pslg::new(points, constraints).map_err(|e| Failure::of_library(e.into(), input.first))?;
+    Ok(input)
+}
+
+/// Triangulates with the bar and the cancel flag at work; segments that cross are an error.
 pub(crate) fn compute(job: &Job, input: &Input, way: &WayArgs) -> Result<Output, Failure> {
+    compute_with(job, input, way, CrossingPolicy::Error)
+}
+
+fn compute_with(job: &Job, input: &Input, way: &WayArgs, crossings: CrossingPolicy) -> Result<Output, Failure> {
     let options = Options {
+        crossings,
         backend: way.backend.backend(),
         threads: way.threads.into(),
         grid: way.grid,
         max_crossings: way.max_crossings,
         progress: Some(job.progress()),
         cancel: Some(job.cancel.clone()),
+        ..Options::default()
     };
     job.stage("triangulating");
     polder::triangulate(&input.pslg, &options).map_err(|error| Failure::of_library(error, input.first))

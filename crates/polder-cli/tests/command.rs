@@ -313,7 +313,7 @@ fn the_report_says_what_became_of_everything() {
     let folder = folder(&[("x.poly", input)]);
     let report: Value =
         serde_json::from_str(&ok(folder.path(), "triangulate x.poly -o x.tri --report json").text()).unwrap();
-    assert_eq!(report["points"], serde_json::json!({"total": 6, "vertices": 5, "duplicates": 1}));
+    assert_eq!(report["points"], serde_json::json!({"total": 6, "vertices": 5, "duplicates": 1, "added": 0}));
     assert_eq!(report["triangles"], 3);
     assert_eq!(report["constraints"]["zero_length"], serde_json::json!([2]));
     assert_eq!(report["constraints"]["repeated"], serde_json::json!([1]));
@@ -471,4 +471,23 @@ fn the_domain_has_neither_exterior_nor_holes() {
     ok(dir, "draw final hole.poly --domain -o out.svg");
     assert!(fs::read_to_string(dir.join("out.svg")).unwrap().contains("8 triangles"));
     assert_eq!(polder(dir, "draw shifted hole.poly --domain -o out.svg").code, 2);
+}
+
+#[test]
+fn segments_that_cross_are_split_where_that_is_asked_for() {
+    let folder = folder(&[("cross.poly", CROSS)]);
+    let dir = folder.path();
+    assert_eq!(polder(dir, "triangulate cross.poly -o out.ele").code, 1);
+    let run = ok(dir, "triangulate cross.poly --crossings split -o out.ele --node --report json");
+    let report: Value = serde_json::from_str(&run.text()).unwrap();
+    assert_eq!((&report["points"]["added"], &report["triangles"]), (&1.into(), &4.into()));
+    let node = fs::read_to_string(dir.join("out.node")).unwrap();
+    assert_eq!(node.lines().count(), 6);
+    assert!(node.lines().last().unwrap().starts_with("5 2 1.5"), "{node}");
+    let said = ok(dir, "triangulate cross.poly --crossings split -o out.ele").err;
+    assert!(said.contains("--node") && said.contains("1 points added where segments cross"), "{said}");
+    for format in ["obj", "ply", "vtk", "svg", "tri"] {
+        ok(dir, &format!("triangulate cross.poly --crossings split -o out.{format}"));
+    }
+    assert!(fs::read_to_string(dir.join("out.obj")).unwrap().contains("v 2 1.5"));
 }

@@ -17,6 +17,7 @@
 //! - A *half-edge* is the number `3 * t + k` of edge `k` of triangle `t`.
 #![forbid(unsafe_code)]
 
+mod added;
 mod canonical;
 mod chains;
 mod digest;
@@ -29,6 +30,7 @@ mod regions;
 mod text;
 mod triangulation;
 
+pub use added::AddedVertex;
 pub use canonical::Slot;
 pub use chains::Chains;
 pub use digest::Digest;

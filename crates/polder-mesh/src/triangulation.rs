@@ -1,5 +1,7 @@
 use crate::canonical::{self, Slot};
-use crate::{Chains, ConstraintId, Digest, EdgeId, GhostMesh, MeshError, NONE, TriangleId, VertexId, next, prev};
+use crate::{
+    AddedVertex, Chains, ConstraintId, Digest, EdgeId, GhostMesh, MeshError, NONE, TriangleId, VertexId, next, prev,
+};
 use std::sync::OnceLock;
 
 /// The constrained Delaunay triangulation of a PSLG, in canonical order.
@@ -18,6 +20,7 @@ pub struct Triangulation {
     constrained: Vec<u8>,
     representatives: Vec<u32>,
     chains: Chains,
+    added: Vec<AddedVertex>,
     half_edges: OnceLock<Vec<u32>>,
 }
 
@@ -47,6 +50,7 @@ impl PartialEq for Triangulation {
             && self.constrained == other.constrained
             && self.representatives == other.representatives
             && self.chains == other.chains
+            && self.added == other.added
     }
 }
 
@@ -63,6 +67,7 @@ impl Triangulation {
             constrained: sorted.constrained,
             representatives: parts.representatives,
             chains: parts.chains,
+            added: Vec::new(),
             half_edges: OnceLock::new(),
         }
     }
@@ -94,7 +99,8 @@ impl Triangulation {
     ) -> Result<Self, MeshError> {
         canonical::check(parts.representatives.len(), &triangles, &neighbors, &constrained)?;
         let Parts { representatives, chains } = parts;
-        Ok(Self { triangles, neighbors, constrained, representatives, chains, half_edges: OnceLock::new() })
+        let (added, half_edges) = (Vec::new(), OnceLock::new());
+        Ok(Self { triangles, neighbors, constrained, representatives, chains, added, half_edges })
     }
 
     /// A triangulation from bare triangles, as a mesh file gives them: neighbors are found by sorting edges.
@@ -126,6 +132,7 @@ impl Triangulation {
             constrained: kept.iter().map(|t| self.constrained[t.index()]).collect(),
             representatives: self.representatives.clone(),
             chains: self.chains.clone(),
+            added: self.added.clone(),
             half_edges: OnceLock::new(),
         };
         (filtered, kept)
@@ -173,6 +180,16 @@ impl Triangulation {
     /// The vertices along one constraint, from its first end to its second.
     pub fn chain(&self, constraint: ConstraintId) -> &[u32] {
         self.chains.get(constraint.index())
+    }
+
+    /// The vertices that are no input points: the last ones of [`representatives`](Self::representatives).
+    pub fn added(&self) -> &[AddedVertex] {
+        &self.added
+    }
+
+    /// Says that the last vertices were added where constraints cross, and what the chains of the constraints are then.
+    pub fn with_added(self, added: Vec<AddedVertex>, chains: Chains) -> Self {
+        Self { added, chains, ..self }
     }
 
     /// The corners of one triangle.
@@ -266,8 +283,9 @@ impl Triangulation {
         table
     }
 
-    /// A hash of the triangles in canonical order: the same on every backend, device and number of threads.
+    /// A hash of the triangles in canonical order, and of the added vertices' positions: the same on every backend,
+    /// device and number of threads.
     pub fn digest(&self) -> Digest {
-        Digest::of(&self.triangles)
+        Digest::of(&self.triangles, &self.added)
     }
 }

@@ -64,7 +64,7 @@ fn crossings(pslg: &Pslg, options: &Options) -> Result<Error, Error> {
     Ok(crate::stages::crossing(crossings(&mesh, &positions, &walk, options.max_crossings)?))
 }
 
-fn typed(error: CpuError) -> Error {
+pub(crate) fn typed(error: CpuError) -> Error {
     match error {
         CpuError::Cancelled(cancelled) => cancelled.into(),
         CpuError::TooLarge { .. } => too_many_chain_vertices(),

@@ -38,6 +38,20 @@ pub enum Error {
         /// Index of the first such seed.
         seed: usize,
     },
+    /// Cutting constraints where they cross made them cross again, round after round.
+    #[error("constraints still cross after they were cut in {rounds} rounds")]
+    SplitUnfinished {
+        /// The rounds.
+        rounds: u32,
+    },
+    /// Constraints cross more often than may be.
+    #[error("more than {limit} {what}")]
+    SplitTooLarge {
+        /// What there is too much of.
+        what: &'static str,
+        /// The most that may be.
+        limit: usize,
+    },
     /// What was asked for does not exist here.
     #[error("{what}")]
     Unsupported {
@@ -67,7 +81,7 @@ pub enum Error {
 
 impl Error {
     /// A stable word for programs: `index_out_of_range`, `non_finite_coordinate`, `crossing_constraints`, `too_large`,
-    /// `seed_on_constraint`, `unsupported`, `bound_exceeded`, `internal` or `cancelled`.
+    /// `seed_on_constraint`, `split_unfinished`, `unsupported`, `bound_exceeded`, `internal` or `cancelled`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Input(MeshError::NonFiniteCoordinate { .. }) => "non_finite_coordinate",
@@ -75,6 +89,8 @@ impl Error {
             Self::Input(MeshError::TooLarge { .. }) => "too_large",
             Self::CrossingConstraints { .. } => "crossing_constraints",
             Self::SeedOnConstraint { .. } => "seed_on_constraint",
+            Self::SplitUnfinished { .. } => "split_unfinished",
+            Self::SplitTooLarge { .. } => "too_large",
             Self::SeedNotFinite { .. } => "non_finite_coordinate",
             Self::Unsupported { .. } => "unsupported",
             Self::BoundExceeded { .. } => "bound_exceeded",

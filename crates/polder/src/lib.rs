@@ -38,13 +38,15 @@ mod options;
 mod reference;
 pub mod regions;
 mod report;
+mod split;
 mod stages;
 pub mod verify;
 
 pub use error::Error;
-pub use options::{Backend, Options, ProgressFn};
+pub use options::{Backend, CrossingPolicy, Options, ProgressFn};
 pub use polder_mesh::{
-    Chains, ConstraintId, DVec2, Digest, Edge, EdgeId, MeshError, Progress, Pslg, TriangleId, Triangulation, VertexId,
+    AddedVertex, Chains, ConstraintId, DVec2, Digest, Edge, EdgeId, MeshError, Progress, Pslg, TriangleId,
+    Triangulation, VertexId,
 };
 /// The compute engine: what devices there are.
 pub use polder_vulkan as vulkan;
@@ -55,16 +57,27 @@ pub use {polder_constrain as constrain, polder_dualize as dualize, polder_flip a
 
 /// Triangulates the whole convex hull of a PSLG's points, with every constraint as edges.
 ///
-/// The result does not depend on the options: they choose the way, not the answer.
+/// The result does not depend on the options: they choose the way, not the answer; but for [`Options::crossings`], which
+/// says what becomes of constraints that cross. Where they are split, [`Triangulation::added`] lists the new vertices,
+/// behind the input's points.
 ///
 /// # Errors
 ///
 /// - [`Error::CrossingConstraints`] names all pairs of constraints that cross at a point inside both that is no vertex,
 ///   up to [`Options::max_crossings`].
+/// - [`Error::SplitTooLarge`], [`Error::SplitUnfinished`] where they shall be split but cannot.
 /// - [`Error::Unsupported`] if the backend asked for, or the number of threads or pixels, cannot be had.
 /// - [`Error::Cancelled`] if the caller said so.
 /// - [`Error::BoundExceeded`] and [`Error::Internal`] are defects of polder, reported instead of a hang or a wrong answer.
 pub fn triangulate(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
+    match options.crossings {
+        CrossingPolicy::Error => on_backend(pslg, options),
+        CrossingPolicy::Split => split::triangulate(pslg, options),
+    }
+}
+
+/// Constraints that cross are an error here.
+fn on_backend(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     match options.backend {
         Backend::Auto | Backend::Cpu => cpu::triangulate(pslg, options),
         Backend::Reference => reference::triangulate(pslg, options),

@@ -17,10 +17,22 @@ pub enum Backend {
     Reference,
 }
 
+/// What becomes of constraints that cross where no vertex is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum CrossingPolicy {
+    /// They are an error that names all of them.
+    #[default]
+    Error,
+    /// They are cut there: a vertex is added at each crossing, at its position correctly rounded. Pieces may lie a little
+    /// beside the constraints that they are of, by at most half a last place of each coordinate in every round.
+    Split,
+}
+
 /// A function that is told how far the work has come.
 pub type ProgressFn = Arc<dyn Fn(Progress) + Send + Sync>;
 
-/// How to triangulate. The result does not depend on any of this.
+/// How to triangulate. The result does not depend on any of this but [`Options::crossings`].
 #[derive(Clone)]
 pub struct Options {
     /// Where to compute.
@@ -31,6 +43,10 @@ pub struct Options {
     pub grid: Option<u32>,
     /// The most crossing pairs that an error names.
     pub max_crossings: usize,
+    /// What becomes of constraints that cross.
+    pub crossings: CrossingPolicy,
+    /// The most vertices that are added where constraints cross.
+    pub max_added_vertices: usize,
     /// Called between rounds, possibly from another thread.
     pub progress: Option<ProgressFn>,
     /// Set it to true to stop: the call returns [`Error::Cancelled`](crate::Error::Cancelled) at the next round.
@@ -39,7 +55,16 @@ pub struct Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { backend: Backend::Auto, threads: 0, grid: None, max_crossings: 1_000_000, progress: None, cancel: None }
+        Self {
+            backend: Backend::Auto,
+            threads: 0,
+            grid: None,
+            max_crossings: 1_000_000,
+            crossings: CrossingPolicy::Error,
+            max_added_vertices: 10_000_000,
+            progress: None,
+            cancel: None,
+        }
     }
 }
 
@@ -64,6 +89,8 @@ impl std::fmt::Debug for Options {
             .field("threads", &self.threads)
             .field("grid", &self.grid)
             .field("max_crossings", &self.max_crossings)
+            .field("crossings", &self.crossings)
+            .field("max_added_vertices", &self.max_added_vertices)
             .finish_non_exhaustive()
     }
 }

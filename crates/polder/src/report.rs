@@ -45,6 +45,8 @@ pub struct PointReport {
     pub vertices: usize,
     /// Points that equal a lower one.
     pub duplicates: usize,
+    /// Vertices that are no points of the input: added where constraints cross.
+    pub added: usize,
 }
 
 /// What became of the constraints; [`Triangulation::chains`] says it of each.
@@ -101,12 +103,27 @@ impl Report {
         let duplicates = triangulation.duplicates().count();
         let total = pslg.points().len();
         Self {
-            points: PointReport { total, vertices: total - duplicates, duplicates },
+            points: PointReport { total, vertices: total - duplicates, duplicates, added: 0 },
             constraints: constraints(pslg, triangulation),
             triangles: triangulation.triangles().len(),
             seconds: watch.start.elapsed().as_secs_f64(),
             stages: watch.stages,
             ..Self::default()
+        }
+    }
+}
+
+impl Report {
+    /// The report of a triangulation of cut constraints, as one of the input.
+    pub(crate) fn of_split(self, input: &Pslg, triangulation: &Triangulation, watch: Stopwatch) -> Self {
+        let (total, added) = (input.points().len(), triangulation.added().len());
+        let vertices = self.points.vertices;
+        Self {
+            points: PointReport { total, vertices, duplicates: total + added - vertices, added },
+            constraints: constraints(input, triangulation),
+            seconds: watch.start.elapsed().as_secs_f64(),
+            stages: [watch.stages, self.stages].concat(),
+            ..self
         }
     }
 }

@@ -74,7 +74,7 @@ fn by_integers(u: DVec2, v: DVec2, [a, b]: [DVec2; 2], [c, d]: [DVec2; 2]) -> Si
 }
 
 /// A finite number as sign, integer and power of two.
-fn parts(x: f64) -> (bool, u64, i32) {
+pub(super) fn parts(x: f64) -> (bool, u64, i32) {
     let bits = x.to_bits();
     let (exponent, fraction) = ((bits >> 52 & 0x7ff) as i32, bits & ((1 << 52) - 1));
     let integer = if exponent == 0 { fraction } else { fraction | 1 << 52 };
@@ -83,14 +83,14 @@ fn parts(x: f64) -> (bool, u64, i32) {
 
 /// An integer of any length: limbs of 32 bits, the lowest first, none of them zero at the end.
 #[derive(Clone, Debug)]
-struct Integer {
-    negative: bool,
-    limbs: Vec<u32>,
+pub(super) struct Integer {
+    pub(super) negative: bool,
+    pub(super) limbs: Vec<u32>,
 }
 
 impl Integer {
     /// `x` divided by two to the power `low`, which is no more than the exponent of `x`.
-    fn of(x: f64, low: i32) -> Self {
+    pub(super) fn of(x: f64, low: i32) -> Self {
         let (negative, integer, exponent) = parts(x);
         if integer == 0 {
             return Self { negative: false, limbs: Vec::new() };
@@ -105,7 +105,7 @@ impl Integer {
         Self { negative, limbs }
     }
 
-    fn times(&self, other: &Self) -> Self {
+    pub(super) fn times(&self, other: &Self) -> Self {
         let mut limbs = vec![0u32; self.limbs.len() + other.limbs.len()];
         for (i, &x) in self.limbs.iter().enumerate() {
             let mut carry = 0u64;
@@ -119,7 +119,7 @@ impl Integer {
         Self { negative: self.negative != other.negative, limbs }.trimmed()
     }
 
-    fn minus(&self, other: &Self) -> Self {
+    pub(super) fn minus(&self, other: &Self) -> Self {
         if self.negative != other.negative {
             return Self { negative: self.negative, limbs: sum(&self.limbs, &other.limbs) }.trimmed();
         }
@@ -137,7 +137,7 @@ impl Integer {
         self
     }
 
-    fn sign(&self) -> Sign {
+    pub(super) fn sign(&self) -> Sign {
         match (self.limbs.is_empty(), self.negative) {
             (true, _) => Sign::Zero,
             (false, true) => Sign::Negative,
@@ -146,7 +146,7 @@ impl Integer {
     }
 }
 
-fn compare(a: &[u32], b: &[u32]) -> Ordering {
+pub(super) fn compare(a: &[u32], b: &[u32]) -> Ordering {
     a.len().cmp(&b.len()).then_with(|| a.iter().rev().cmp(b.iter().rev()))
 }
 
@@ -164,7 +164,7 @@ fn sum(a: &[u32], b: &[u32]) -> Vec<u32> {
 }
 
 /// `a` is not less than `b`.
-fn difference(a: &[u32], b: &[u32]) -> Vec<u32> {
+pub(super) fn difference(a: &[u32], b: &[u32]) -> Vec<u32> {
     let mut borrow = 0i64;
     a.iter()
         .enumerate()

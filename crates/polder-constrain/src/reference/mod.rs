@@ -23,6 +23,7 @@ mod exact;
 mod fan;
 mod inner;
 mod insert;
+mod intersection;
 mod walk;
 
 pub use configuration::{Configuration, TriangleChain, triangle_chain};
@@ -30,6 +31,7 @@ pub use crossings::crossings;
 #[doc(hidden)]
 pub use inner::Trial;
 pub use insert::{INNER_ROUNDS, Insertion, insert};
+pub use intersection::intersection;
 pub use walk::walk;
 
 use crate::{ConstrainError, InsertReport, Walk};
