@@ -14,12 +14,8 @@ layout(push_constant, std430) uniform Args {
     U32 clockwise;
     U32 reflex;
     ReadU32 finite; // how many finite triangles there are
-    MaybeReadU32 items; // slots to look at; all of them if left out
-    MaybeReadU32 counter;
-    uint limit;
     ReadU32 slot_count;
-    WriteU32 deferred;
-    U32 deferred_count;
+    uint limit;
     uint vertices;
 };
 
@@ -34,12 +30,8 @@ bool leads_back(uint h) {
 }
 
 void main() {
-    uint i = item_index();
-    if (i >= length_of(counter, limit)) {
-        return;
-    }
-    uint t = present(items) ? items.at[i] : i;
-    if (is_deleted(triangles, t)) {
+    uint t = item_index();
+    if (t >= min(slot_count.at[0], limit) || is_deleted(triangles, t)) {
         return;
     }
     if (!leads_back(3u * t) || !leads_back(3u * t + 1u) || !leads_back(3u * t + 2u)) {
@@ -62,10 +54,6 @@ void main() {
     Point q = point_at(positions, v.y);
     Point r = point_at(positions, v.z);
     int turn = v.x == v.z ? 0 : orient2d(p, q, r);
-    if (turn == UNDECIDED) {
-        deferred.at[atomicAdd(deferred_count.at[0], 1u)] = t;
-        return;
-    }
     if (!ghost) {
         if (turn <= 0) {
             atomicMin(clockwise.at[0], t);

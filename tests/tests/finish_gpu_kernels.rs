@@ -312,8 +312,7 @@ fn check_triangles() {
         let word = |place: usize| words.slice(4 * place..4 * place + 1).unwrap();
         let finite = steps.case.mesh.finite().next().is_some();
         let finite_count = gpu.buffer(&[u32::from(finite)]);
-        let (deferred, deferred_count) = (gpu.buffer(&vec![0; capacity]), gpu.buffer(&[0_u32]));
-        let all = CheckTrianglesArgs {
+        let arguments = CheckTrianglesArgs {
             triangles: on_device.mesh.corners(),
             links: on_device.mesh.twins(),
             positions: on_device.mesh.positions().cast(),
@@ -322,22 +321,13 @@ fn check_triangles() {
             clockwise: word(2),
             reflex: word(3),
             finite: finite_count.view(),
-            items: None,
-            counter: Some(on_device.mesh.slots()),
-            limit: capacity as u32,
             slot_count: on_device.mesh.slots(),
-            deferred: deferred.view(),
-            deferred_count: deferred_count.view(),
+            limit: capacity as u32,
             vertices: steps.points() as u32,
         };
-        let rest = CheckTrianglesArgs { items: Some(deferred.view()), counter: Some(deferred_count.view()), ..all };
-        let kernels = Arithmetic::Filtered.kernels::<CheckTriangles>(&gpu.device, &[]).unwrap();
+        let kernel = Arithmetic::Filtered.kernel::<CheckTriangles>(&gpu.device, &[]).unwrap();
         let mut recording = gpu.recording();
-        for (kernel, arguments) in [(Some(&kernels.first), all), (kernels.rest.as_ref(), rest)] {
-            if let Some(kernel) = kernel {
-                recording.dispatch(kernel, groups_for(capacity, 256), &arguments);
-            }
-        }
+        recording.dispatch(&kernel, groups_for(capacity, 256), &arguments);
         gpu.run(&recording);
         let found = gpu.fetch(words.view());
         let found = Check { minima: found[0], broken: found[4], clockwise: found[8], reflex: found[12] };

@@ -26,18 +26,10 @@ pub struct CheckTrianglesArgs<'a> {
     pub reflex: View<'a, u32>,
     /// read
     pub finite: View<'a, u32>,
-    /// read, may be left out
-    pub items: Option<View<'a, u32>>,
-    /// read, may be left out
-    pub counter: Option<View<'a, u32>>,
-    /// a value
-    pub limit: u32,
     /// read
     pub slot_count: View<'a, u32>,
-    /// written
-    pub deferred: View<'a, u32>,
-    /// read and written
-    pub deferred_count: View<'a, u32>,
+    /// a value
+    pub limit: u32,
     /// a value
     pub vertices: u32,
 }
@@ -49,7 +41,7 @@ impl Shader for CheckTriangles {
         name: "check_triangles",
         words: include_spirv!("../spv/check_triangles.spv"),
         without_float64: Some(include_spirv!("../spv/check_triangles.integers.spv")),
-        argument_bytes: 116,
+        argument_bytes: 80,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -59,11 +51,7 @@ impl Shader for CheckTriangles {
             BufferArgument { name: "clockwise", offset: 40, access: Access::ReadWrite },
             BufferArgument { name: "reflex", offset: 48, access: Access::ReadWrite },
             BufferArgument { name: "finite", offset: 56, access: Access::Read },
-            BufferArgument { name: "items", offset: 64, access: Access::Read },
-            BufferArgument { name: "counter", offset: 72, access: Access::Read },
-            BufferArgument { name: "slot_count", offset: 88, access: Access::Read },
-            BufferArgument { name: "deferred", offset: 96, access: Access::Write },
-            BufferArgument { name: "deferred_count", offset: 104, access: Access::ReadWrite },
+            BufferArgument { name: "slot_count", offset: 64, access: Access::Read },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -71,7 +59,7 @@ impl Shader for CheckTriangles {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "c145d2e9e8fd073c2bf7eb0d3c251101c2745bc143f948db8813f85153af2d6e",
+        source_hash: "9fce5efbcb96dfff9fec79e7eefe273ce443e512b6a54919043c226c750fa927",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -84,13 +72,9 @@ impl Shader for CheckTriangles {
         encoder.buffer(40, args.clockwise);
         encoder.buffer(48, args.reflex);
         encoder.buffer(56, args.finite);
-        encoder.optional(64, args.items);
-        encoder.optional(72, args.counter);
-        encoder.value(80, args.limit);
-        encoder.buffer(88, args.slot_count);
-        encoder.buffer(96, args.deferred);
-        encoder.buffer(104, args.deferred_count);
-        encoder.value(112, args.vertices);
+        encoder.buffer(64, args.slot_count);
+        encoder.value(72, args.limit);
+        encoder.value(76, args.vertices);
     }
 }
 

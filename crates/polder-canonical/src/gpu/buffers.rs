@@ -7,7 +7,7 @@ use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunRep
 
 /// Half-edges have 31 bits.
 const MOST_SLOTS: usize = (1 << 31) / 3;
-const WORDS: usize = 40;
+const WORDS: usize = 36;
 
 /// Places of single words in the counts: views begin at multiples of 4 words.
 #[derive(Clone, Copy)]
@@ -22,7 +22,6 @@ pub(super) enum Word {
     Clockwise = 24,
     Reflex = 28,
     Groups = 32,
-    Undecided = 36,
 }
 
 /// Results and scratch memory of the step, for some number of points and slots.

@@ -21,7 +21,7 @@ pub use line::{Line, LineRead};
 pub use record::Input;
 
 use crate::kernels::*;
-use polder_flip::gpu::{Arithmetic, Kernels};
+use polder_flip::gpu::Arithmetic;
 use polder_vulkan::kernels::DispatchSize;
 use polder_vulkan::{Device, Error, Estimate, Kernel};
 
@@ -43,7 +43,7 @@ pub struct Stage {
     dispatch_size: Kernel<DispatchSize>,
     sort_long: Kernel<SortLong>,
     write_triangles: Kernel<WriteTriangles>,
-    check_triangles: Kernels<CheckTriangles>,
+    check_triangles: Kernel<CheckTriangles>,
 }
 
 /// The longest list that is compared all with all.
@@ -80,7 +80,7 @@ impl Stage {
             dispatch_size: Kernel::new(device, &[])?,
             sort_long: Kernel::new(device, &[("WORKGROUP", wide)])?,
             write_triangles: Kernel::new(device, &[])?,
-            check_triangles: arithmetic.kernels(device, &[])?,
+            check_triangles: arithmetic.kernel(device, &[])?,
         })
     }
 

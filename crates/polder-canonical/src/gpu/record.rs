@@ -135,12 +135,9 @@ impl Stage {
         Ok(())
     }
 
-    /// The certificate. What a filter leaves open is listed, and decided by longer arithmetic.
+    /// The certificate.
     fn record_check(&self, recording: &mut Recording, input: &Input<'_>, buffers: &Buffers) -> Result<(), Error> {
-        let groups = buffers.groups()?;
-        let (deferred, deferred_count) = (buffers.list.view(), buffers.word(Word::Undecided)?);
-        let limit = buffers.slots as u32;
-        let all = CheckTrianglesArgs {
+        let arguments = CheckTrianglesArgs {
             triangles: input.mesh.corners(),
             links: input.mesh.twins(),
             positions: input.mesh.positions().cast(),
@@ -149,21 +146,11 @@ impl Stage {
             clockwise: buffers.word(Word::Clockwise)?,
             reflex: buffers.word(Word::Reflex)?,
             finite: buffers.word(Word::Finite)?,
-            items: None,
-            counter: Some(input.mesh.slots()),
-            limit,
             slot_count: input.mesh.slots(),
-            deferred,
-            deferred_count,
+            limit: buffers.slots as u32,
             vertices: buffers.points as u32,
         };
-        recording.dispatch(&self.check_triangles.first, groups_for(buffers.slots, WORKGROUP), &all);
-        let Some(exact) = &self.check_triangles.rest else { return Ok(()) };
-        let arguments = DispatchSizeArgs { counter: Some(deferred_count), groups, limit, items: WORKGROUP };
-        recording.dispatch(&self.dispatch_size, [1, 1, 1], &arguments);
-        // The list is read where it was written; nothing is deferred any more.
-        let rest = CheckTrianglesArgs { items: Some(deferred), counter: Some(deferred_count), ..all };
-        recording.dispatch_indirect(exact, groups, &rest);
+        recording.dispatch(&self.check_triangles, groups_for(buffers.slots, WORKGROUP), &arguments);
         Ok(())
     }
 }
