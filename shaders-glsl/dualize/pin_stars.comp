@@ -14,10 +14,12 @@ layout(push_constant, std430) uniform Args {
     U32 deferred;
     U32 words;
     ReadU32 pixels; // of sites
+    WriteU32 rings; // STEPS words for each place: the neighbors in order
     int64_t translation_x;
     int64_t translation_y;
     int exponent;
     uint half_side;
+    uint ring_limit; // places that there is room for
     uint round;
 };
 
@@ -68,6 +70,12 @@ void main() {
                     count++;
                     h = rotate_ccw(links, h);
                     closed = h == start;
+                }
+            }
+            if (steps == 0u && i < ring_limit) {
+                // A larger star has no ring.
+                [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+                    rings.at[STEPS * i + k] = closed && k < count ? ends[k] : DELETED;
                 }
             }
             [[unroll]] for (uint k = 0u; k < STEPS; k++) {

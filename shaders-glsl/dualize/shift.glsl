@@ -97,7 +97,8 @@ bool is_waiting(uint state, uint round) {
 }
 
 // A walk around a vertex is a chain of reads, each of which waits for the one before. So a walk takes a few steps before it
-// looks at what it has met, and all that it looks at comes at once.
+// looks at what it has met, and all that it looks at comes at once. Rings of so many neighbors are kept for sites that were
+// pinned.
 const uint STEPS = 8u;
 
 // No star of a mesh that a grid gives comes near this many triangles: more is a broken mesh.

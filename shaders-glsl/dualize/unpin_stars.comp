@@ -12,36 +12,60 @@ layout(push_constant, std430) uniform Args {
     U32 state;
     ReadPositions points; // by input index
     ReadU32 order;
-    ReadU32 all;   // half-edges out of the pinned sites, for the first round
-    U32 waiting;   // half-edges out of sites not tried yet, for other rounds
+    ReadU32 all;   // half-edges out of the pinned sites, by place
+    U32 waiting;   // places of sites not tried yet, for rounds but the first
     U32 later;     // the same for the next round
-    U32 deferred;  // half-edges out of sites that the other kernel decides
+    U32 deferred;  // places of sites that the other kernel decides
+    ReadU32 rings; // STEPS words for each place: the neighbors in order
     U32 words;
+    uint ring_limit; // places that there are rings for
     uint round;    // of the batch
     uint again;    // whether the deferred ones are to be decided
 };
 
+struct Walk {
+    uint start;
+    uint at;
+    bool closed;
+};
+
+// The ends of the spokes after the next few, and how many there are; what is behind them is DELETED, or repeats the first.
+uint look(inout Walk walk, uint place, out uint ends[STEPS]) {
+    uint count = 0u;
+    if (place < ring_limit) {
+        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+            ends[k] = rings.at[STEPS * place + k];
+            count += uint(ends[k] != DELETED);
+        }
+        if (count != 0u) {
+            walk.closed = true;
+            return count;
+        }
+    }
+    [[unroll]] for (uint k = 0u; k < STEPS; k++) {
+        ends[k] = apex(triangles, walk.at);
+        if (!walk.closed) {
+            count++;
+            walk.at = rotate_ccw(links, walk.at);
+            walk.closed = walk.at == walk.start;
+        }
+    }
+    return count;
+}
+
 // Of the neighbors that have to be tried before v, the one with the highest priority, or NONE.
-uint last_before(uint start, uint v, uint stamp) {
+uint last_before(uint start, uint place, uint v, uint stamp) {
     uint mine = priority(v);
     uint other = NONE;
     uint most = 0u;
-    uint h = start;
-    bool closed = false;
-    for (uint steps = 0u; !closed && steps < MOST_TRIANGLES_OF_STAR; steps += STEPS) {
+    Walk walk = Walk(start, start, false);
+    for (uint steps = 0u; !walk.closed && steps < MOST_TRIANGLES_OF_STAR; steps += STEPS) {
         uint ends[STEPS];
         uint states[STEPS];
-        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
-            ends[k] = apex(triangles, h);
-            if (!closed) {
-                h = rotate_ccw(links, h);
-                closed = h == start;
-            }
-        }
+        look(walk, place, ends);
         [[unroll]] for (uint k = 0u; k < STEPS; k++) {
             states[k] = state.at[ends[k] < DELETED ? ends[k] : v];
         }
-        // What is behind the last spoke repeats the first.
         [[unroll]] for (uint k = 0u; k < STEPS; k++) {
             uint theirs = priority(ends[k]);
             if (ends[k] < DELETED && theirs < mine && theirs >= most && is_waiting(states[k], stamp)) {
@@ -50,31 +74,22 @@ uint last_before(uint start, uint v, uint stamp) {
             }
         }
     }
-    if (!closed) {
+    if (!walk.closed) {
         note_broken(words, v);
     }
     return other;
 }
 
 // Whether the triangles around v are counterclockwise with v at this place; or open, if that is not decided.
-bool stays_counterclockwise(uint start, uint v, uvec4 at, out bool open) {
+bool stays_counterclockwise(uint start, uint place, uint v, uvec4 at, out bool open) {
     open = false;
     uint u = destination(triangles, start);
     uvec4 at_u = positions.at[u < DELETED ? u : v];
-    uint h = start;
-    bool closed = false;
-    for (uint steps = 0u; !closed && steps < MOST_TRIANGLES_OF_STAR; steps += STEPS) {
-        uint ends[STEPS]; // of the next spokes
+    Walk walk = Walk(start, start, false);
+    for (uint steps = 0u; !walk.closed && steps < MOST_TRIANGLES_OF_STAR; steps += STEPS) {
+        uint ends[STEPS];
         uvec4 where[STEPS];
-        uint count = 0u;
-        [[unroll]] for (uint k = 0u; k < STEPS; k++) {
-            ends[k] = apex(triangles, h);
-            if (!closed) {
-                count++;
-                h = rotate_ccw(links, h);
-                closed = h == start;
-            }
-        }
+        uint count = look(walk, place, ends);
         [[unroll]] for (uint k = 0u; k < STEPS; k++) {
             where[k] = positions.at[ends[k] < DELETED ? ends[k] : v];
         }
@@ -99,25 +114,26 @@ void main() {
     bool is_first = round == 0u && words.at[UNPIN_STARTED] == 1u;
     uint stamp = words.at[UNPIN_BASE] + round;
     for (uint i = first_item(); i < count; i += item_stride()) {
-        uint start = again != 0u ? deferred.at[i] : is_first ? all.at[i] : waiting.at[i];
+        uint place = again != 0u ? deferred.at[i] : is_first ? i : waiting.at[i];
+        uint start = all.at[place];
         uint v = origin(triangles, start);
-        if (again == 0u && !is_first && is_waiting(state.at[state.at[v] & PLACE], stamp)) {
-            later.at[append(words, UNPIN_COUNTS + round + 1u)] = start;
-            continue;
-        }
         if (again == 0u) {
-            uint other = last_before(start, v, stamp);
+            if (!is_first && is_waiting(state.at[state.at[v] & PLACE], stamp)) {
+                later.at[append(words, UNPIN_COUNTS + round + 1u)] = place;
+                continue;
+            }
+            uint other = last_before(start, place, v, stamp);
             if (other != NONE) {
                 state.at[v] = PINNED | other;
-                later.at[append(words, UNPIN_COUNTS + round + 1u)] = start;
+                later.at[append(words, UNPIN_COUNTS + round + 1u)] = place;
                 continue;
             }
         }
         uvec4 at = points.at[order.at[v]];
         bool open = false;
-        bool stuck = !stays_counterclockwise(start, v, at, open);
+        bool stuck = !stays_counterclockwise(start, place, v, at, open);
         if (open && !stuck) {
-            deferred.at[append(words, UNPIN_DEFERRED + round)] = start;
+            deferred.at[append(words, UNPIN_DEFERRED + round)] = place;
             continue;
         }
         if (!stuck) {

@@ -167,6 +167,7 @@ fn pin_stars() {
         let pixels = device.gpu.buffer(&case.pixels);
         let (entries, counts) =
             (device.gpu.buffer(&entries), device.gpu.buffer(&words(Word::PinCounts as usize, 0, list.len())));
+        let rings = device.gpu.buffer(&vec![7_u32; 8 * list.len().max(1)]);
         let [translation_x, translation_y] = case.mapping.translation();
         let arguments = PinStarsArgs {
             triangles: held.mesh.corners(),
@@ -181,9 +182,12 @@ fn pin_stars() {
             translation_y,
             exponent: case.mapping.exponent(),
             half_side: case.mapping.side() / 2,
+            rings: rings.view(),
+            ring_limit: list.len() as u32,
             round: 0,
         };
         device.run_deciding::<PinStars>(&arguments);
+        assert_eq!(device.gpu.fetch(rings.view())[..8 * list.len()], shift::rings(&case.mesh, &list), "{}", case.name);
         let bits = |points: &[glam::DVec2]| points.iter().map(|p| p.to_array().map(f64::to_bits)).collect::<Vec<_>>();
         assert_eq!(bits(&device.gpu.fetch(held.mesh.positions())), bits(&positions), "{}", case.name);
         let count = device.gpu.fetch(counts.view())[Word::PinCounts as usize + 1] as usize;
@@ -216,6 +220,13 @@ fn unpin_stars() {
             let mut counts = words(Word::UnpinCounts as usize, 0, list.len());
             counts[Word::UnpinStarted as usize] = 1;
             let counts = device.gpu.buffer(&counts);
+            // Of some there is no room for a ring.
+            let kept = list.len() - list.len() / 3;
+            let mut rings = shift::rings(&case.mesh, &list[..kept]);
+            rings.push(7);
+            let rings = device.gpu.buffer(&rings);
+            let mut place = vec![NONE; case.centers.len()];
+            (0..).zip(&list).for_each(|(i, &h)| place[case.mesh.origin(h) as usize] = i);
             let (mut waiting, mut round) = (list, 0);
             while !waiting.is_empty() && round < 5 {
                 let [from, to] = if round % 2 == 0 { [&even, &odd] } else { [&odd, &even] };
@@ -230,7 +241,9 @@ fn unpin_stars() {
                     waiting: from.view(),
                     later: to.view(),
                     deferred: deferred.view(),
+                    rings: rings.view(),
                     words: counts.view(),
+                    ring_limit: kept as u32,
                     round,
                     again: 0,
                 };
@@ -242,7 +255,8 @@ fn unpin_stars() {
                 assert_eq!(device.gpu.fetch(states.view()), state, "{}", case.name);
                 let count = device.gpu.fetch(counts.view())[Word::UnpinCounts as usize + round as usize] as usize;
                 let later = device.gpu.fetch(to.view())[..count].to_vec();
-                assert_eq!(sorted(later), sorted(waiting.clone()), "{}", case.name);
+                let expected = waiting.iter().map(|&h| place[case.mesh.origin(h) as usize]).collect();
+                assert_eq!(sorted(later), sorted(expected), "{}", case.name);
                 rounds += 1;
             }
         }

@@ -877,6 +877,8 @@ pub struct PinStarsArgs<'a> {
     pub words: View<'a, u32>,
     /// read
     pub pixels: View<'a, u32>,
+    /// written
+    pub rings: View<'a, u32>,
     /// a value
     pub translation_x: i64,
     /// a value
@@ -885,6 +887,8 @@ pub struct PinStarsArgs<'a> {
     pub exponent: i32,
     /// a value
     pub half_side: u32,
+    /// a value
+    pub ring_limit: u32,
     /// a value
     pub round: u32,
 }
@@ -896,7 +900,7 @@ impl Shader for PinStars {
         name: "pin_stars",
         words: include_spirv!("../spv/pin_stars.spv"),
         without_float64: Some(include_spirv!("../spv/pin_stars.integers.spv")),
-        argument_bytes: 92,
+        argument_bytes: 104,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -906,6 +910,7 @@ impl Shader for PinStars {
             BufferArgument { name: "deferred", offset: 40, access: Access::ReadWrite },
             BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
             BufferArgument { name: "pixels", offset: 56, access: Access::Read },
+            BufferArgument { name: "rings", offset: 64, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -920,7 +925,7 @@ impl Shader for PinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "2db7486beaf71fb221e74fa7c267244629a34ce526c39b3c9b48984ef831cc87",
+        source_hash: "687ac7e82fa39ec4b3e2487302c347d8aa40a7c38e53db69b6e5b4504db77782",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -933,11 +938,13 @@ impl Shader for PinStars {
         encoder.buffer(40, args.deferred);
         encoder.buffer(48, args.words);
         encoder.buffer(56, args.pixels);
-        encoder.value(64, args.translation_x);
-        encoder.value(72, args.translation_y);
-        encoder.value(80, args.exponent);
-        encoder.value(84, args.half_side);
-        encoder.value(88, args.round);
+        encoder.buffer(64, args.rings);
+        encoder.value(72, args.translation_x);
+        encoder.value(80, args.translation_y);
+        encoder.value(88, args.exponent);
+        encoder.value(92, args.half_side);
+        encoder.value(96, args.ring_limit);
+        encoder.value(100, args.round);
     }
 }
 
@@ -1011,7 +1018,7 @@ impl Shader for PinTriangles {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "c9eb40ff64923f721bbd7c4282d0aeed844c540669ab4ba5d76e502f091c1bfe",
+        source_hash: "9f99a68605979a5bcd2c70ae451db8bce3d949a329cddc96098eb3e703dc255b",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1137,7 +1144,7 @@ impl Shader for ShiftAdvance {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "5cd7fcd9ec371a4813933e3de3d3846c0ff182aaf25294ada0fe84fa7f536b19",
+        source_hash: "14481f895827bb499281d1f02ddcbddf2ab053768ee940e0afa89ea763b2bc2b",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1190,7 +1197,7 @@ impl Shader for ShiftMove {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "e2614e3e594c440bacc8753434cf51e991df3d82d3f2c1f23a50802258e50497",
+        source_hash: "e1ae83a0e373d20193f7a370baf47d40136fb243d9deaa5e109e7ef27821da59",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1277,7 +1284,7 @@ impl Shader for TakeoutCut {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "361aca64cafc4cc52baf30461596c4684a863846a0920ab9dc654d700ae2cabd",
+        source_hash: "2266bd81edc3585aa1a1e585624d3f228b07a29996eabb547c7cf38821f2572a",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1343,7 +1350,7 @@ impl Shader for TakeoutElect {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "e037651866ed63d3183e738bc3f0bab48c3c34ef3c3a44e4e834f967f225f07d",
+        source_hash: "67ade2903ada963ac376c30e3016bed0b7198cb1893a6f0eab559bda566855b1",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1411,7 +1418,7 @@ impl Shader for TakeoutHeirs {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "644bbed2fe9dee06978b9adf9e3624363adcffdf7e441f7818224c3dbf1aa7d0",
+        source_hash: "43bf6bafed87364890ee041075d7e56386664a44af2237c9aab68ed152762faa",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1472,7 +1479,7 @@ impl Shader for TakeoutLink {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "1c8617a9ec48057bae7d69f34a81fff6e4bf07774b65e49d1e1355ced0419541",
+        source_hash: "39a6cc37d07f3afa0d6520693bbad064b4be57637ece8bf1e27c2021f3be0a66",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1525,7 +1532,7 @@ impl Shader for UnpinFinish {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "02ffff25bcc3f926aa73c06bffd265d1670620f3b6f2463594c112d6acb52367",
+        source_hash: "bacbb14318441b5efaba157152ef3714772dd75c4ee63231e6240941b1515f7c",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1566,8 +1573,12 @@ pub struct UnpinStarsArgs<'a> {
     pub later: View<'a, u32>,
     /// read and written
     pub deferred: View<'a, u32>,
+    /// read
+    pub rings: View<'a, u32>,
     /// read and written
     pub words: View<'a, u32>,
+    /// a value
+    pub ring_limit: u32,
     /// a value
     pub round: u32,
     /// a value
@@ -1581,7 +1592,7 @@ impl Shader for UnpinStars {
         name: "unpin_stars",
         words: include_spirv!("../spv/unpin_stars.spv"),
         without_float64: Some(include_spirv!("../spv/unpin_stars.integers.spv")),
-        argument_bytes: 96,
+        argument_bytes: 108,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -1593,7 +1604,8 @@ impl Shader for UnpinStars {
             BufferArgument { name: "waiting", offset: 56, access: Access::ReadWrite },
             BufferArgument { name: "later", offset: 64, access: Access::ReadWrite },
             BufferArgument { name: "deferred", offset: 72, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 80, access: Access::ReadWrite },
+            BufferArgument { name: "rings", offset: 80, access: Access::Read },
+            BufferArgument { name: "words", offset: 88, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -1608,7 +1620,7 @@ impl Shader for UnpinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "8f877166eb42940bb4e55247b93f2532ada89184090e6256293856a019f29c86",
+        source_hash: "5a220520e4acaa60e9375e349c916e027ffe10f74662816f8d7655812c6d551b",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1623,8 +1635,10 @@ impl Shader for UnpinStars {
         encoder.buffer(56, args.waiting);
         encoder.buffer(64, args.later);
         encoder.buffer(72, args.deferred);
-        encoder.buffer(80, args.words);
-        encoder.value(88, args.round);
-        encoder.value(92, args.again);
+        encoder.buffer(80, args.rings);
+        encoder.buffer(88, args.words);
+        encoder.value(96, args.ring_limit);
+        encoder.value(100, args.round);
+        encoder.value(104, args.again);
     }
 }

@@ -223,6 +223,8 @@ impl Stage {
                     translation_y,
                     exponent: input.mapping.exponent(),
                     half_side: input.mapping.side() / 2,
+                    rings: buffers.edge_of.view(),
+                    ring_limit: buffers.rings(),
                     round,
                 };
                 body.dispatch(&self.pin_stars.first, self.groups, &arguments);
@@ -244,7 +246,9 @@ impl Stage {
                     waiting,
                     later,
                     deferred,
+                    rings: buffers.edge_of.view(),
                     words,
+                    ring_limit: buffers.rings(),
                     round,
                     again: 0,
                 };

@@ -6,6 +6,8 @@ use polder_flip::gpu::Mesh;
 use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunReport, View};
 
 const WORDS: usize = 288;
+/// Words of the ring of a site.
+const NEIGHBORS: usize = 8;
 
 /// Places of words, as `shift.glsl` has them; views begin at multiples of 4 words.
 #[derive(Clone, Copy)]
@@ -39,6 +41,7 @@ pub struct Buffers {
     pub(super) all: Buffer<u32>,
     waiting: [Buffer<u32>; 2],
     pub(super) winners: Buffer<u32>,
+    /// The outer edge of each triangle of a star; before, the neighbors of the first sites that were pinned.
     pub(super) edge_of: Buffer<u32>,
     /// Outer edges of stars; before, lists of what the filter left open.
     pub(super) edges: Buffer<[u32; 2]>,
@@ -105,6 +108,11 @@ impl Buffers {
 
     pub(super) fn word(&self, word: Word) -> Result<View<'_, u32>, Error> {
         self.words.slice(word as usize..word as usize + 1)
+    }
+
+    /// Sites whose neighbors are kept: more than twice as many as a random set pins.
+    pub(super) fn rings(&self) -> u32 {
+        (self.edge_of.len() / NEIGHBORS) as u32
     }
 
     /// The list that a round works on, and that of the next.

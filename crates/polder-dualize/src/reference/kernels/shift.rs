@@ -91,6 +91,20 @@ pub fn pin_stars(
     pin_triangles(mesh, positions, state, around)
 }
 
+/// For each half-edge on a list the neighbors around its origin in order, beginning after its end: eight words, the rest
+/// [`DELETED`], and all of them where there are more neighbors. What [`pin_stars`] leaves for [`unpin_stars`].
+pub fn rings(mesh: &GhostMesh, list: &[u32]) -> Vec<u32> {
+    let ring = |&h: &u32| {
+        let mut ends: Vec<u32> = star(mesh, h).map(|h| mesh.apex(h)).collect();
+        if ends.len() > 8 {
+            ends.clear();
+        }
+        ends.resize(8, DELETED);
+        ends
+    };
+    list.iter().flat_map(ring).collect()
+}
+
 /// Tries the origins of those half-edges `waiting` whose turn it is, and returns the others, which remember whom they wait
 /// for: in rounds but the first, they wait while that one does.
 pub fn unpin_stars(
