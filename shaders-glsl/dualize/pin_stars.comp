@@ -11,7 +11,6 @@ layout(push_constant, std430) uniform Args {
     Points positions;
     U32 state;
     U32 pinned;
-    U32 deferred;
     U32 words;
     ReadU32 pixels; // of sites
     WriteU32 rings; // STEPS words for each place: the neighbors in order
@@ -92,10 +91,7 @@ void main() {
                 // A triangle is tested from its lowest fresh corner.
                 bool elsewhere = fresh_u && u < v || fresh[k] && w < v;
                 if (max(u, w) < DELETED && !elsewhere) {
-                    int sign = orient2d(at, at_u, at_w);
-                    if (sign == UNDECIDED) {
-                        deferred.at[append(words, PIN_DEFERRED + round + 1u)] = spokes[k] / 3u;
-                    } else if (sign != 1) {
+                    if (orient2d(at, at_u, at_w) != 1) {
                         pin_corner(u, next_edge(spokes[k]));
                         pin_corner(w, prev_edge(spokes[k]));
                     }

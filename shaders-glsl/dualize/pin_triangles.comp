@@ -1,5 +1,5 @@
-// Pin: tests triangles, all or those on a list, and pins the corners of every one that is not counterclockwise. Of ghost
-// triangles, lists the edge that leads to the ghost.
+// Pin: tests all triangles, and pins the corners of every one that is not counterclockwise. Of ghost triangles, lists the
+// edge that leads to the ghost.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shift.glsl"
@@ -10,15 +10,12 @@ layout(push_constant, std430) uniform Args {
     ReadPoints positions;
     U32 state;
     U32 pinned;   // half-edges, each out of a pinned site
-    U32 deferred; // triangles
     U32 words;
-    MaybeReadU32 listed; // triangles
     ReadU32 slots;
     U32 hull; // half-edges
     U32 hull_count;
     uint hull_limit;
     uint limit;
-    uint entry; // that newly pinned sites are counted in
 };
 
 const uint AT_ONCE = 2u;
@@ -27,13 +24,13 @@ const uint AT_ONCE = 2u;
 shared uint bad[(AT_ONCE + 1u) * WORKGROUP];
 shared uint bad_count;
 
-void pin_corners(uint t, uint before) {
+void pin_corners(uint t) {
     uvec3 at = corners(triangles, t);
     bool is_new[3];
     [[unroll]] for (uint k = 0u; k < 3u; k++) {
         is_new[k] = pin(state, at[k]);
     }
-    uint place = before + reserve(words, PIN_COUNTS + entry, uint(is_new[0]) + uint(is_new[1]) + uint(is_new[2]));
+    uint place = reserve(words, PIN_COUNTS, uint(is_new[0]) + uint(is_new[1]) + uint(is_new[2]));
     [[unroll]] for (uint k = 0u; k < 3u; k++) {
         if (is_new[k]) {
             pinned.at[place] = prev_edge(3u * t + k);
@@ -52,9 +49,7 @@ void list_hull_edge(uint t, uvec3 at) {
 }
 
 void main() {
-    bool all_slots = !present(listed);
-    uint count = min(all_slots ? slots.at[0] : words.at[PIN_DEFERRED + entry], limit);
-    uint before = pinned_before(words, entry);
+    uint count = min(slots.at[0], limit);
     if (gl_LocalInvocationIndex == 0u) {
         bad_count = 0u;
     }
@@ -66,7 +61,7 @@ void main() {
         uvec4 where[AT_ONCE][3];
         [[unroll]] for (uint k = 0u; k < AT_ONCE; k++) {
             uint i = min(base + k * stride + gl_LocalInvocationIndex, count - 1u);
-            t[k] = all_slots ? i : listed.at[i];
+            t[k] = i;
             at[k] = corners(triangles, t[k]);
         }
         [[unroll]] for (uint k = 0u; k < AT_ONCE; k++) {
@@ -89,10 +84,7 @@ void main() {
             uvec4 a = k == 0u ? where[0][0] : where[1][0];
             uvec4 b = k == 0u ? where[0][1] : where[1][1];
             uvec4 c = k == 0u ? where[0][2] : where[1][2];
-            int sign = orient2d(a, b, c);
-            if (sign == UNDECIDED) {
-                deferred.at[append(words, PIN_DEFERRED + entry)] = slot;
-            } else if (sign != 1) {
+            if (orient2d(a, b, c) != 1) {
                 bad[atomicAdd(bad_count, 1u)] = slot;
             }
         }
@@ -101,7 +93,7 @@ void main() {
         barrier();
         if (waiting >= WORKGROUP) {
             for (uint i = gl_LocalInvocationIndex; i < waiting; i += WORKGROUP) {
-                pin_corners(bad[i], before);
+                pin_corners(bad[i]);
             }
             if (gl_LocalInvocationIndex == 0u) {
                 bad_count = 0u;
@@ -111,6 +103,6 @@ void main() {
     }
     barrier();
     for (uint i = gl_LocalInvocationIndex; i < bad_count; i += WORKGROUP) {
-        pin_corners(bad[i], before);
+        pin_corners(bad[i]);
     }
 }

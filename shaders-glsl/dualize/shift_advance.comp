@@ -29,8 +29,8 @@ void main() {
     uint left = chain == 0u ? words.at[counts + rounds] : 0u;
     for (uint k = 0u; k < 32u; k++) {
         words.at[counts + k] = k == 0u ? left : 0u;
-        words.at[counts + 32u + k] = 0u;
         if (phase == 2u) {
+            words.at[OUT_WINNERS + k] = 0u;
             words.at[OUT_DEFERRED + k] = 0u;
             words.at[OUT_EDGES + k] = 0u;
         }

@@ -1,5 +1,5 @@
 // Take out: finds the pinned sites that go in this round, those without a pinned neighbor of lower priority; each with the
-// half-edge to its heir. The others wait.
+// half-edge to its heir. The others wait, and remember whom for: neighbors stay neighbors until one of them goes.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shift.glsl"
@@ -11,6 +11,7 @@ layout(push_constant, std430) uniform Args {
     ReadU32 waiting; // sites
     WriteU32 later;  // sites, for the next round
     WriteU32 winners; // half-edges
+    U32 waits_for;    // two words for each site, the first of them
     U32 words;
     uint round; // of the batch
 };
@@ -24,7 +25,14 @@ void main() {
     uint count = words.at[OUT_COUNTS + round];
     for (uint i = first_item(); i < count; i += item_stride()) {
         uint v = waiting.at[i];
+        uint other = waits_for.at[2u * v];
+        if (other != NONE && (state.at[other] & PINNED) != 0u) {
+            later.at[append(words, OUT_COUNTS + round + 1u)] = v;
+            continue;
+        }
         uint mine = priority(v);
+        // Of the neighbors that go before, of the first few, the one with the highest priority.
+        uint most = 0u;
         uint start = state.at[v] & PLACE;
         bool beaten = false;
         bool finite = false;
@@ -53,7 +61,12 @@ void main() {
                 uint u = ends[k];
                 if (u < DELETED) {
                     uint pinned = states[k] & PINNED;
-                    beaten = beaten || pinned != 0u && priority(u) < mine;
+                    uint theirs = priority(u);
+                    if (pinned != 0u && theirs < mine && theirs >= most) {
+                        beaten = true;
+                        most = theirs;
+                        other = u;
+                    }
                     if ((pinned | u) < heir) {
                         heir = pinned | u;
                         to_heir = spokes[k];
@@ -63,6 +76,7 @@ void main() {
             steps += STEPS;
         }
         if (beaten) {
+            waits_for.at[2u * v] = other;
             later.at[append(words, OUT_COUNTS + round + 1u)] = v;
         } else if (!closed) {
             note_broken(words, v);

@@ -9,6 +9,7 @@ layout(push_constant, std430) uniform Args {
     U32 state;
     U32 all;
     U32 stuck;
+    WriteU32 waits_for; // two words for each site
     U32 words;
 };
 
@@ -22,6 +23,7 @@ void main() {
         state.at[v] = is_free ? v : PINNED | h;
         if (!is_free) {
             stuck.at[append(words, OUT_COUNTS)] = v;
+            waits_for.at[2u * v] = NONE;
         }
     }
 }

@@ -15,12 +15,10 @@ layout(push_constant, std430) uniform Args {
     ReadU32 all;   // half-edges out of the pinned sites, by place
     U32 waiting;   // places of sites not tried yet, for rounds but the first
     U32 later;     // the same for the next round
-    U32 deferred;  // places of sites that the other kernel decides
     ReadU32 rings; // STEPS words for each place: the neighbors in order
     U32 words;
     uint ring_limit; // places that there are rings for
     uint round;    // of the batch
-    uint again;    // whether the deferred ones are to be decided
 };
 
 struct Walk {
@@ -80,9 +78,8 @@ uint last_before(uint start, uint place, uint v, uint stamp) {
     return other;
 }
 
-// Whether the triangles around v are counterclockwise with v at this place; or open, if that is not decided.
-bool stays_counterclockwise(uint start, uint place, uint v, uvec4 at, out bool open) {
-    open = false;
+// Whether the triangles around v are counterclockwise with v there.
+bool stays_counterclockwise(uint start, uint place, uint v, uvec4 at) {
     uint u = destination(triangles, start);
     uvec4 at_u = positions.at[u < DELETED ? u : v];
     Walk walk = Walk(start, start, false);
@@ -95,12 +92,8 @@ bool stays_counterclockwise(uint start, uint place, uint v, uvec4 at, out bool o
         }
         [[dont_unroll]] for (uint k = 0u; k < count; k++) {
             uint w = ends[k];
-            if (max(u, w) < DELETED) {
-                int sign = orient2d(at, at_u, where[k]);
-                open = open || sign == UNDECIDED;
-                if (sign != 1 && sign != UNDECIDED) {
-                    return false;
-                }
+            if (max(u, w) < DELETED && orient2d(at, at_u, where[k]) != 1) {
+                return false;
             }
             u = w;
             at_u = where[k];
@@ -110,32 +103,25 @@ bool stays_counterclockwise(uint start, uint place, uint v, uvec4 at, out bool o
 }
 
 void main() {
-    uint count = words.at[again != 0u ? UNPIN_DEFERRED + round : UNPIN_COUNTS + round];
+    uint count = words.at[UNPIN_COUNTS + round];
     bool is_first = round == 0u && words.at[UNPIN_STARTED] == 1u;
     uint stamp = words.at[UNPIN_BASE] + round;
     for (uint i = first_item(); i < count; i += item_stride()) {
-        uint place = again != 0u ? deferred.at[i] : is_first ? i : waiting.at[i];
+        uint place = is_first ? i : waiting.at[i];
         uint start = all.at[place];
         uint v = origin(triangles, start);
-        if (again == 0u) {
-            if (!is_first && is_waiting(state.at[state.at[v] & PLACE], stamp)) {
-                later.at[append(words, UNPIN_COUNTS + round + 1u)] = place;
-                continue;
-            }
-            uint other = last_before(start, place, v, stamp);
-            if (other != NONE) {
-                state.at[v] = PINNED | other;
-                later.at[append(words, UNPIN_COUNTS + round + 1u)] = place;
-                continue;
-            }
-        }
-        uvec4 at = points.at[order.at[v]];
-        bool open = false;
-        bool stuck = !stays_counterclockwise(start, place, v, at, open);
-        if (open && !stuck) {
-            deferred.at[append(words, UNPIN_DEFERRED + round)] = place;
+        if (!is_first && is_waiting(state.at[state.at[v] & PLACE], stamp)) {
+            later.at[append(words, UNPIN_COUNTS + round + 1u)] = place;
             continue;
         }
+        uint other = last_before(start, place, v, stamp);
+        if (other != NONE) {
+            state.at[v] = PINNED | other;
+            later.at[append(words, UNPIN_COUNTS + round + 1u)] = place;
+            continue;
+        }
+        uvec4 at = points.at[order.at[v]];
+        bool stuck = !stays_counterclockwise(start, place, v, at);
         if (!stuck) {
             positions.at[v] = at;
         }

@@ -8,6 +8,7 @@ mod vulkan_support;
 use bytemuck::Zeroable;
 use polder_dualize::kernels::*;
 use polder_dualize::reference::kernels::{shift, takeout};
+use polder_flip::gpu::Arithmetic;
 use polder_mesh::GhostMesh;
 use polder_vulkan::Shader;
 use shift::{PINNED, ROW, WORDS, Word};
@@ -114,7 +115,6 @@ fn pin_triangles() {
         for arithmetic in device.arithmetics() {
             let held = device.hold(&case.mesh, &case.truth);
             let (states, list) = (device.gpu.buffer(&state), device.gpu.buffer(&vec![7_u32; case.truth.len()]));
-            let deferred = device.gpu.buffer(&vec![7_u32; case.mesh.slots().max(1)]);
             let counts = device.gpu.buffer(&[0; WORDS]);
             let hull = device.gpu.buffer(&vec![7_u32; case.mesh.slots().max(1)]);
             let hull_count = device.gpu.buffer(&[0_u32]);
@@ -123,18 +123,14 @@ fn pin_triangles() {
                 positions: held.mesh.positions().cast(),
                 state: states.view(),
                 pinned: list.view(),
-                deferred: deferred.view(),
                 words: counts.view(),
-                listed: None,
                 slots: held.mesh.slots(),
                 hull: hull.view(),
                 hull_count: hull_count.view(),
                 hull_limit: hull.len() as u32,
                 limit: case.mesh.slots() as u32,
-                entry: 0,
             };
-            let again = PinTrianglesArgs { listed: Some(deferred.view()), ..arguments };
-            device.run_both::<PinTriangles>(arithmetic, &arguments, &again);
+            device.run_deciding::<PinTriangles>(arithmetic, &arguments);
             let count = device.gpu.fetch(counts.view())[Word::PinCounts as usize] as usize;
             let list = device.gpu.fetch(list.view())[..count].to_vec();
             let mut wanted = state.clone();
@@ -161,7 +157,7 @@ fn pin_stars() {
         let mut positions = case.truth.clone();
         let expected = shift::pin_stars(&case.mesh, &case.centers, &mut positions, &state, &list);
         let held = device.hold(&case.mesh, &case.truth);
-        let (states, deferred) = (device.gpu.buffer(&state), device.gpu.buffer(&vec![7_u32; case.mesh.slots().max(1)]));
+        let states = device.gpu.buffer(&state);
         let mut entries = list.clone();
         entries.resize(case.truth.len(), 7);
         let pixels = device.gpu.buffer(&case.pixels);
@@ -175,7 +171,6 @@ fn pin_stars() {
             positions: held.mesh.positions().cast(),
             state: states.view(),
             pinned: entries.view(),
-            deferred: deferred.view(),
             words: counts.view(),
             pixels: pixels.view().cast(),
             translation_x,
@@ -186,7 +181,7 @@ fn pin_stars() {
             ring_limit: list.len() as u32,
             round: 0,
         };
-        device.run_deciding::<PinStars>(&arguments);
+        device.run_deciding::<PinStars>(Arithmetic::Integers, &arguments);
         assert_eq!(device.gpu.fetch(rings.view())[..8 * list.len()], shift::rings(&case.mesh, &list), "{}", case.name);
         let bits = |points: &[glam::DVec2]| points.iter().map(|p| p.to_array().map(f64::to_bits)).collect::<Vec<_>>();
         assert_eq!(bits(&device.gpu.fetch(held.mesh.positions())), bits(&positions), "{}", case.name);
@@ -215,7 +210,7 @@ fn unpin_stars() {
             let states = device.gpu.buffer(&state);
             let (points, order) = (device.gpu.buffer(&case.points), device.gpu.buffer(&case.order));
             let room = vec![7_u32; case.truth.len()];
-            let [all, even, odd, deferred] = [0; 4].map(|_| device.gpu.buffer(&room));
+            let [all, even, odd] = [0; 3].map(|_| device.gpu.buffer(&room));
             device.gpu.engine.upload(all.view().slice(0..list.len()).unwrap(), &list).unwrap();
             let mut counts = words(Word::UnpinCounts as usize, 0, list.len());
             counts[Word::UnpinStarted as usize] = 1;
@@ -240,15 +235,12 @@ fn unpin_stars() {
                     all: all.view(),
                     waiting: from.view(),
                     later: to.view(),
-                    deferred: deferred.view(),
                     rings: rings.view(),
                     words: counts.view(),
                     ring_limit: kept as u32,
                     round,
-                    again: 0,
                 };
-                let again = UnpinStarsArgs { again: 1, ..arguments };
-                device.run_both::<UnpinStars>(arithmetic, &arguments, &again);
+                device.run_deciding::<UnpinStars>(arithmetic, &arguments);
                 waiting = shift::unpin_stars(&case.mesh, &case.truth, &mut positions, &mut state, &waiting, round);
                 round += 1;
                 assert_eq!(device.gpu.fetch(held.mesh.positions()), positions, "{}", case.name);
@@ -276,11 +268,13 @@ fn unpin_finish() {
         let (states, all) = (device.gpu.buffer(&state), device.gpu.buffer(&[&list[..], &[7]].concat()));
         let stuck = device.gpu.buffer(&vec![7_u32; case.truth.len()]);
         let counts = device.gpu.buffer(&words(Word::Bad as usize, 0, list.len()));
+        let waits_for = device.gpu.buffer(&vec![7_u32; 2 * case.truth.len()]);
         let arguments = UnpinFinishArgs {
             triangles: held.mesh.corners(),
             state: states.view(),
             all: all.view(),
             stuck: stuck.view(),
+            waits_for: waits_for.view(),
             words: counts.view(),
         };
         device.run::<UnpinFinish>(&arguments);
@@ -289,6 +283,8 @@ fn unpin_finish() {
         assert_eq!(device.gpu.fetch(states.view()), state, "{}", case.name);
         let count = device.gpu.fetch(counts.view())[Word::OutCounts as usize] as usize;
         assert_eq!(sorted(device.gpu.fetch(stuck.view())[..count].to_vec()), expected, "{}", case.name);
+        let waits_for = device.gpu.fetch(waits_for.view());
+        assert!(expected.iter().all(|&v| waits_for[2 * v as usize] == NONE), "{}", case.name);
     }
 }
 
@@ -314,6 +310,8 @@ fn takeout_elect() {
     let mut device = Device::open();
     let (mut winners_in_all, mut chains) = (0, 0);
     for case in cases() {
+        // Kept from round to round.
+        let waits_for = device.gpu.buffer(&vec![NONE; 2 * case.centers.len()]);
         each_round(&case, |now, expected| {
             let held = device.hold(&now.mesh, &now.positions);
             let room = vec![7_u32; now.state.len()];
@@ -327,6 +325,7 @@ fn takeout_elect() {
                 waiting: waiting.view(),
                 later: later.view(),
                 winners: winners.view(),
+                waits_for: waits_for.view(),
                 words: counts.view(),
                 round: 2,
             };

@@ -872,8 +872,6 @@ pub struct PinStarsArgs<'a> {
     /// read and written
     pub pinned: View<'a, u32>,
     /// read and written
-    pub deferred: View<'a, u32>,
-    /// read and written
     pub words: View<'a, u32>,
     /// read
     pub pixels: View<'a, u32>,
@@ -900,17 +898,16 @@ impl Shader for PinStars {
         name: "pin_stars",
         words: include_spirv!("../spv/pin_stars.spv"),
         without_float64: Some(include_spirv!("../spv/pin_stars.integers.spv")),
-        argument_bytes: 104,
+        argument_bytes: 96,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
             BufferArgument { name: "positions", offset: 16, access: Access::ReadWrite },
             BufferArgument { name: "state", offset: 24, access: Access::ReadWrite },
             BufferArgument { name: "pinned", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "deferred", offset: 40, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
-            BufferArgument { name: "pixels", offset: 56, access: Access::Read },
-            BufferArgument { name: "rings", offset: 64, access: Access::Write },
+            BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "pixels", offset: 48, access: Access::Read },
+            BufferArgument { name: "rings", offset: 56, access: Access::Write },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -925,7 +922,7 @@ impl Shader for PinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "687ac7e82fa39ec4b3e2487302c347d8aa40a7c38e53db69b6e5b4504db77782",
+        source_hash: "b9e21798a5069c816f72d616ff8c129966479f09cccba34df8b4c8322d19c02c",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -935,21 +932,20 @@ impl Shader for PinStars {
         encoder.buffer(16, args.positions);
         encoder.buffer(24, args.state);
         encoder.buffer(32, args.pinned);
-        encoder.buffer(40, args.deferred);
-        encoder.buffer(48, args.words);
-        encoder.buffer(56, args.pixels);
-        encoder.buffer(64, args.rings);
-        encoder.value(72, args.translation_x);
-        encoder.value(80, args.translation_y);
-        encoder.value(88, args.exponent);
-        encoder.value(92, args.half_side);
-        encoder.value(96, args.ring_limit);
-        encoder.value(100, args.round);
+        encoder.buffer(40, args.words);
+        encoder.buffer(48, args.pixels);
+        encoder.buffer(56, args.rings);
+        encoder.value(64, args.translation_x);
+        encoder.value(72, args.translation_y);
+        encoder.value(80, args.exponent);
+        encoder.value(84, args.half_side);
+        encoder.value(88, args.ring_limit);
+        encoder.value(92, args.round);
     }
 }
 
-/// Pin: tests triangles, all or those on a list, and pins the corners of every one that is not counterclockwise. Of ghost
-/// triangles, lists the edge that leads to the ghost.
+/// Pin: tests all triangles, and pins the corners of every one that is not counterclockwise. Of ghost triangles, lists the
+/// edge that leads to the ghost.
 #[derive(Debug, Clone, Copy)]
 pub enum PinTriangles {}
 
@@ -965,11 +961,7 @@ pub struct PinTrianglesArgs<'a> {
     /// read and written
     pub pinned: View<'a, u32>,
     /// read and written
-    pub deferred: View<'a, u32>,
-    /// read and written
     pub words: View<'a, u32>,
-    /// read, may be left out
-    pub listed: Option<View<'a, u32>>,
     /// read
     pub slots: View<'a, u32>,
     /// read and written
@@ -980,8 +972,6 @@ pub struct PinTrianglesArgs<'a> {
     pub hull_limit: u32,
     /// a value
     pub limit: u32,
-    /// a value
-    pub entry: u32,
 }
 
 impl Shader for PinTriangles {
@@ -991,18 +981,16 @@ impl Shader for PinTriangles {
         name: "pin_triangles",
         words: include_spirv!("../spv/pin_triangles.spv"),
         without_float64: Some(include_spirv!("../spv/pin_triangles.integers.spv")),
-        argument_bytes: 92,
+        argument_bytes: 72,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "positions", offset: 8, access: Access::Read },
             BufferArgument { name: "state", offset: 16, access: Access::ReadWrite },
             BufferArgument { name: "pinned", offset: 24, access: Access::ReadWrite },
-            BufferArgument { name: "deferred", offset: 32, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
-            BufferArgument { name: "listed", offset: 48, access: Access::Read },
-            BufferArgument { name: "slots", offset: 56, access: Access::Read },
-            BufferArgument { name: "hull", offset: 64, access: Access::ReadWrite },
-            BufferArgument { name: "hull_count", offset: 72, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "slots", offset: 40, access: Access::Read },
+            BufferArgument { name: "hull", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "hull_count", offset: 56, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -1018,7 +1006,7 @@ impl Shader for PinTriangles {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "9f99a68605979a5bcd2c70ae451db8bce3d949a329cddc96098eb3e703dc255b",
+        source_hash: "43e09c2120a1ffbab913ee7cb3a10c833a86155fabcc599c92dacfe3c8ca50ba",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1027,15 +1015,12 @@ impl Shader for PinTriangles {
         encoder.buffer(8, args.positions);
         encoder.buffer(16, args.state);
         encoder.buffer(24, args.pinned);
-        encoder.buffer(32, args.deferred);
-        encoder.buffer(40, args.words);
-        encoder.optional(48, args.listed);
-        encoder.buffer(56, args.slots);
-        encoder.buffer(64, args.hull);
-        encoder.buffer(72, args.hull_count);
-        encoder.value(80, args.hull_limit);
-        encoder.value(84, args.limit);
-        encoder.value(88, args.entry);
+        encoder.buffer(32, args.words);
+        encoder.buffer(40, args.slots);
+        encoder.buffer(48, args.hull);
+        encoder.buffer(56, args.hull_count);
+        encoder.value(64, args.hull_limit);
+        encoder.value(68, args.limit);
     }
 }
 
@@ -1144,7 +1129,7 @@ impl Shader for ShiftAdvance {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "14481f895827bb499281d1f02ddcbddf2ab053768ee940e0afa89ea763b2bc2b",
+        source_hash: "91e7f5951985698632f5a08031bcff3dfe24a785264d5b86fa6d866d692cab39",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1197,7 +1182,7 @@ impl Shader for ShiftMove {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "e1ae83a0e373d20193f7a370baf47d40136fb243d9deaa5e109e7ef27821da59",
+        source_hash: "086abf3f506d63ad2c5de69e31f7f56dcb46ea65dbeb2b4a4021e7c9998a81fd",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1284,7 +1269,7 @@ impl Shader for TakeoutCut {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "2266bd81edc3585aa1a1e585624d3f228b07a29996eabb547c7cf38821f2572a",
+        source_hash: "40f7740aa9848e4190e47008418f5d9d51e9c09d1d547eb95f2929a256ef20c1",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1305,7 +1290,7 @@ impl Shader for TakeoutCut {
 }
 
 /// Take out: finds the pinned sites that go in this round, those without a pinned neighbor of lower priority; each with the
-/// half-edge to its heir. The others wait.
+/// half-edge to its heir. The others wait, and remember whom for: neighbors stay neighbors until one of them goes.
 #[derive(Debug, Clone, Copy)]
 pub enum TakeoutElect {}
 
@@ -1325,6 +1310,8 @@ pub struct TakeoutElectArgs<'a> {
     /// written
     pub winners: View<'a, u32>,
     /// read and written
+    pub waits_for: View<'a, u32>,
+    /// read and written
     pub words: View<'a, u32>,
     /// a value
     pub round: u32,
@@ -1337,7 +1324,7 @@ impl Shader for TakeoutElect {
         name: "takeout_elect",
         words: include_spirv!("../spv/takeout_elect.spv"),
         without_float64: None,
-        argument_bytes: 60,
+        argument_bytes: 68,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -1345,12 +1332,13 @@ impl Shader for TakeoutElect {
             BufferArgument { name: "waiting", offset: 24, access: Access::Read },
             BufferArgument { name: "later", offset: 32, access: Access::Write },
             BufferArgument { name: "winners", offset: 40, access: Access::Write },
-            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "waits_for", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 56, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "67ade2903ada963ac376c30e3016bed0b7198cb1893a6f0eab559bda566855b1",
+        source_hash: "b82298cb303c0cf56e186804d743f28edb6b1f49fad5c6be7029b2ea89f28c2a",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1361,8 +1349,9 @@ impl Shader for TakeoutElect {
         encoder.buffer(24, args.waiting);
         encoder.buffer(32, args.later);
         encoder.buffer(40, args.winners);
-        encoder.buffer(48, args.words);
-        encoder.value(56, args.round);
+        encoder.buffer(48, args.waits_for);
+        encoder.buffer(56, args.words);
+        encoder.value(64, args.round);
     }
 }
 
@@ -1418,7 +1407,7 @@ impl Shader for TakeoutHeirs {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "43bf6bafed87364890ee041075d7e56386664a44af2237c9aab68ed152762faa",
+        source_hash: "ac9c5f6828571883cc99cc6ac689c9479c8598d28920fb274df22438dd44fee4",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1479,7 +1468,7 @@ impl Shader for TakeoutLink {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "39a6cc37d07f3afa0d6520693bbad064b4be57637ece8bf1e27c2021f3be0a66",
+        source_hash: "eb18a50b944aee44bf890f1ac72d0287fb0fe7248acc016c367e151c577b60ee",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1510,6 +1499,8 @@ pub struct UnpinFinishArgs<'a> {
     pub all: View<'a, u32>,
     /// read and written
     pub stuck: View<'a, u32>,
+    /// written
+    pub waits_for: View<'a, u32>,
     /// read and written
     pub words: View<'a, u32>,
 }
@@ -1521,18 +1512,19 @@ impl Shader for UnpinFinish {
         name: "unpin_finish",
         words: include_spirv!("../spv/unpin_finish.spv"),
         without_float64: None,
-        argument_bytes: 40,
+        argument_bytes: 48,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "state", offset: 8, access: Access::ReadWrite },
             BufferArgument { name: "all", offset: 16, access: Access::ReadWrite },
             BufferArgument { name: "stuck", offset: 24, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "waits_for", offset: 32, access: Access::Write },
+            BufferArgument { name: "words", offset: 40, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "bacbb14318441b5efaba157152ef3714772dd75c4ee63231e6240941b1515f7c",
+        source_hash: "9f6c0952f2135cb31281485a4f9280830f4f225c2ef80c302c05497cc4b97d1a",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1541,7 +1533,8 @@ impl Shader for UnpinFinish {
         encoder.buffer(8, args.state);
         encoder.buffer(16, args.all);
         encoder.buffer(24, args.stuck);
-        encoder.buffer(32, args.words);
+        encoder.buffer(32, args.waits_for);
+        encoder.buffer(40, args.words);
     }
 }
 
@@ -1571,8 +1564,6 @@ pub struct UnpinStarsArgs<'a> {
     pub waiting: View<'a, u32>,
     /// read and written
     pub later: View<'a, u32>,
-    /// read and written
-    pub deferred: View<'a, u32>,
     /// read
     pub rings: View<'a, u32>,
     /// read and written
@@ -1581,8 +1572,6 @@ pub struct UnpinStarsArgs<'a> {
     pub ring_limit: u32,
     /// a value
     pub round: u32,
-    /// a value
-    pub again: u32,
 }
 
 impl Shader for UnpinStars {
@@ -1592,7 +1581,7 @@ impl Shader for UnpinStars {
         name: "unpin_stars",
         words: include_spirv!("../spv/unpin_stars.spv"),
         without_float64: Some(include_spirv!("../spv/unpin_stars.integers.spv")),
-        argument_bytes: 108,
+        argument_bytes: 96,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -1603,9 +1592,8 @@ impl Shader for UnpinStars {
             BufferArgument { name: "all", offset: 48, access: Access::Read },
             BufferArgument { name: "waiting", offset: 56, access: Access::ReadWrite },
             BufferArgument { name: "later", offset: 64, access: Access::ReadWrite },
-            BufferArgument { name: "deferred", offset: 72, access: Access::ReadWrite },
-            BufferArgument { name: "rings", offset: 80, access: Access::Read },
-            BufferArgument { name: "words", offset: 88, access: Access::ReadWrite },
+            BufferArgument { name: "rings", offset: 72, access: Access::Read },
+            BufferArgument { name: "words", offset: 80, access: Access::ReadWrite },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[
@@ -1620,7 +1608,7 @@ impl Shader for UnpinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "5a220520e4acaa60e9375e349c916e027ffe10f74662816f8d7655812c6d551b",
+        source_hash: "ea1a44aa502fa1caeaa727db48fef643c558c468c05aa1b5929898d7c85f138b",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1634,11 +1622,9 @@ impl Shader for UnpinStars {
         encoder.buffer(48, args.all);
         encoder.buffer(56, args.waiting);
         encoder.buffer(64, args.later);
-        encoder.buffer(72, args.deferred);
-        encoder.buffer(80, args.rings);
-        encoder.buffer(88, args.words);
-        encoder.value(96, args.ring_limit);
-        encoder.value(100, args.round);
-        encoder.value(104, args.again);
+        encoder.buffer(72, args.rings);
+        encoder.buffer(80, args.words);
+        encoder.value(88, args.ring_limit);
+        encoder.value(92, args.round);
     }
 }

@@ -106,22 +106,24 @@ impl Device {
         self.gpu.run(&recording);
     }
 
-    /// A kernel that asks predicates, and then what it has deferred.
-    pub(crate) fn run_both<S: Shader>(&mut self, arithmetic: Arithmetic, first: &S::Args<'_>, again: &S::Args<'_>) {
-        let kernels = arithmetic.kernels::<S>(&self.gpu.device, &[]).unwrap();
+    /// A kernel that asks predicates.
+    pub(crate) fn run_deciding<S: Shader>(&mut self, arithmetic: Arithmetic, arguments: &S::Args<'_>) {
+        let kernel = arithmetic.kernel::<S>(&self.gpu.device, &[]).unwrap();
         let mut recording = self.gpu.recording();
-        recording.dispatch(&kernels.first, [3, 1, 1], first);
-        if let Some(rest) = &kernels.rest {
-            recording.dispatch(rest, [3, 1, 1], again);
-        }
+        recording.dispatch(&kernel, [3, 1, 1], arguments);
         self.gpu.run(&recording);
     }
 
-    /// A kernel that asks predicates, deciding everything itself.
-    pub(crate) fn run_deciding<S: Shader>(&mut self, arguments: &S::Args<'_>) {
-        let kernels = Arithmetic::Integers.kernels::<S>(&self.gpu.device, &[]).unwrap();
+    /// A kernel that leaves what its filter does not know to another.
+    pub(crate) fn run_both<S: Shader>(&mut self, arithmetic: Arithmetic, first: &S::Args<'_>, again: &S::Args<'_>) {
+        if arithmetic == Arithmetic::Integers {
+            return self.run_deciding::<S>(arithmetic, first);
+        }
+        let filter = Kernel::<S>::new(&self.gpu.device, &[("ARITHMETIC", 0)]).unwrap();
+        let rest = arithmetic.kernel::<S>(&self.gpu.device, &[("WORKGROUP", 32)]).unwrap();
         let mut recording = self.gpu.recording();
-        recording.dispatch(&kernels.first, [3, 1, 1], arguments);
+        recording.dispatch(&filter, [3, 1, 1], first);
+        recording.dispatch(&rest, [3, 1, 1], again);
         self.gpu.run(&recording);
     }
 }

@@ -31,9 +31,8 @@ pub use super::shift_buffers::{Buffers, Counts, Read};
 pub(super) const PIN_ROUNDS: u32 = 4;
 pub(super) const UNPIN_ROUNDS: u32 = 10;
 pub(super) const OUT_ROUNDS: u32 = 6;
-/// Workgroups of a wide kernel, whose invocations stride over their items; and of one over what filters left open.
+/// Workgroups of a wide kernel, whose invocations stride over their items.
 const WIDE: u32 = 2112;
-const RARE: u32 = 132;
 /// Stars that are cut by workgroups at a time.
 const STARS: u32 = 792;
 const WIDE_ON_CPU: u32 = 16;
@@ -71,12 +70,11 @@ pub struct Flips<'a> {
 pub struct Stage {
     pub(super) device: Device,
     pub(super) groups: [u32; 3],
-    pub(super) rare: [u32; 3],
     pub(super) stars: [u32; 3],
     shift_move: Kernel<ShiftMove>,
-    pin_triangles: Kernels<PinTriangles>,
-    pin_stars: Kernels<PinStars>,
-    unpin_stars: Kernels<UnpinStars>,
+    pin_triangles: Kernel<PinTriangles>,
+    pin_stars: Kernel<PinStars>,
+    unpin_stars: Kernel<UnpinStars>,
     unpin_finish: Kernel<UnpinFinish>,
     pub(super) advance: Kernel<ShiftAdvance>,
     pub(super) elect: Kernel<TakeoutElect>,
@@ -92,22 +90,24 @@ impl Stage {
     ///
     /// Those of the device.
     pub fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
-        let [wide, rare] = if device.info().kind == DeviceKind::Cpu { [WIDE_ON_CPU; 2] } else { [WIDE, RARE] };
-        // A workgroup takes a star: a small one, so that many stars are cut at a time.
-        let mut cut: Kernels<TakeoutCut> = arithmetic.kernels(device, &[])?;
-        if cut.rest.is_some() {
-            let small = WORKGROUP_OF_STAR.max(device.info().limits.subgroup);
-            cut.rest = arithmetic.kernels(device, &[("WORKGROUP", small)])?.rest;
-        }
+        let wide = if device.info().kind == DeviceKind::Cpu { WIDE_ON_CPU } else { WIDE };
+        // The filter for small stars, each by one invocation; for others, a small workgroup each.
+        let cut = match arithmetic {
+            Arithmetic::Filtered => {
+                let small = WORKGROUP_OF_STAR.max(device.info().limits.subgroup);
+                let first = Kernel::new(device, &[("ARITHMETIC", 0)])?;
+                Kernels { first, rest: Some(arithmetic.kernel(device, &[("WORKGROUP", small)])?) }
+            }
+            Arithmetic::Integers => arithmetic.kernels(device, &[])?,
+        };
         Ok(Self {
             device: device.clone(),
             groups: [wide, 1, 1],
-            rare: [rare, 1, 1],
             stars: [wide.min(STARS), 1, 1],
             shift_move: Kernel::new(device, &[])?,
-            pin_triangles: arithmetic.kernels(device, &[])?,
-            pin_stars: arithmetic.kernels(device, &[])?,
-            unpin_stars: arithmetic.kernels(device, &[])?,
+            pin_triangles: arithmetic.kernel(device, &[])?,
+            pin_stars: arithmetic.kernel(device, &[])?,
+            unpin_stars: arithmetic.kernel(device, &[])?,
             unpin_finish: Kernel::new(device, &[])?,
             advance: Kernel::new(device, &[])?,
             elect: Kernel::new(device, &[])?,
@@ -174,7 +174,6 @@ impl Stage {
         let (triangles, links) = (mesh.corners(), mesh.twins());
         let positions: View<'_, [u32; 4]> = mesh.positions().cast();
         let points: View<'_, [u32; 4]> = input.points.cast();
-        let deferred: View<'_, u32> = buffers.edges.view().cast();
         let arguments = ShiftMoveArgs {
             points,
             order: input.order,
@@ -186,26 +185,19 @@ impl Stage {
         };
         recording.dispatch(&self.shift_move, self.groups, &arguments);
 
-        let all = PinTrianglesArgs {
+        let arguments = PinTrianglesArgs {
             triangles,
             positions,
             state,
             pinned,
-            deferred,
             words,
-            listed: None,
             slots: mesh.slots(),
             hull: hull.edges(),
             hull_count: hull.count(),
             hull_limit: hull.limit(),
-            limit: mesh.capacity().min(deferred.len()) as u32,
-            entry: 0,
+            limit: mesh.capacity().min(buffers.edges.len()) as u32,
         };
-        let listed = PinTrianglesArgs { listed: Some(deferred), ..all };
-        recording.dispatch(&self.pin_triangles.first, self.groups, &all);
-        if let Some(rest) = &self.pin_triangles.rest {
-            recording.dispatch(rest, self.rare, &listed);
-        }
+        recording.dispatch(&self.pin_triangles, self.groups, &arguments);
         let [translation_x, translation_y] = input.mapping.translation();
         let bound = buffers.sites as u32;
         recording.repeat_ahead("pinning", buffers.word(Word::PinLeft)?, bound, 1, 2, |body| {
@@ -216,7 +208,6 @@ impl Stage {
                     positions,
                     state,
                     pinned,
-                    deferred,
                     words,
                     pixels: input.pixels.cast(),
                     translation_x,
@@ -227,10 +218,7 @@ impl Stage {
                     ring_limit: buffers.rings(),
                     round,
                 };
-                body.dispatch(&self.pin_stars.first, self.groups, &arguments);
-                if let Some(rest) = &self.pin_triangles.rest {
-                    body.dispatch(rest, self.rare, &PinTrianglesArgs { entry: round + 1, ..listed });
-                }
+                body.dispatch(&self.pin_stars, self.groups, &arguments);
             }
             self.record_advance(body, mesh, buffers, Row::Pin, PIN_ROUNDS);
             for round in 0..UNPIN_ROUNDS {
@@ -245,22 +233,18 @@ impl Stage {
                     all: pinned,
                     waiting,
                     later,
-                    deferred,
                     rings: buffers.edge_of.view(),
                     words,
                     ring_limit: buffers.rings(),
                     round,
-                    again: 0,
                 };
-                body.dispatch(&self.unpin_stars.first, self.groups, &arguments);
-                if let Some(rest) = &self.unpin_stars.rest {
-                    body.dispatch(rest, self.rare, &UnpinStarsArgs { again: 1, ..arguments });
-                }
+                body.dispatch(&self.unpin_stars, self.groups, &arguments);
             }
             self.record_advance(body, mesh, buffers, Row::Unpin, UNPIN_ROUNDS);
         });
         let [stuck, _] = buffers.lists(0);
-        let arguments = UnpinFinishArgs { triangles, state, all: pinned, stuck, words };
+        let arguments =
+            UnpinFinishArgs { triangles, state, all: pinned, stuck, waits_for: buffers.freed.view().cast(), words };
         recording.dispatch(&self.unpin_finish, self.groups, &arguments);
         Ok(())
     }

@@ -36,6 +36,7 @@ pub(super) enum Row {
 pub struct Buffers {
     pub(super) sites: usize,
     pub(super) state: Buffer<u32>,
+    /// First, for whom each site waits.
     pub(super) freed: Buffer<[u32; 2]>,
     /// Half-edges out of all sites that were pinned, then these sites.
     pub(super) all: Buffer<u32>,
@@ -43,7 +44,7 @@ pub struct Buffers {
     pub(super) winners: Buffer<u32>,
     /// The outer edge of each triangle of a star; before, the neighbors of the first sites that were pinned.
     pub(super) edge_of: Buffer<u32>,
-    /// Outer edges of stars; before, lists of what the filter left open.
+    /// Outer edges of stars.
     pub(super) edges: Buffer<[u32; 2]>,
     pub(super) words: Buffer<u32>,
 }

@@ -27,7 +27,9 @@ impl Stage {
         recording.repeat_ahead("taking out", buffers.word(Word::OutLeft)?, bound, 1, 5, |body| {
             for round in 0..OUT_ROUNDS {
                 let [waiting, later] = buffers.lists(round);
-                let arguments = TakeoutElectArgs { triangles, links, state, waiting, later, winners, words, round };
+                let waits_for = buffers.freed.view().cast();
+                let arguments =
+                    TakeoutElectArgs { triangles, links, state, waiting, later, winners, waits_for, words, round };
                 body.dispatch(&self.elect, self.groups, &arguments);
                 let arguments = TakeoutCutArgs {
                     triangles,

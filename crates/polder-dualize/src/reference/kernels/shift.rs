@@ -20,7 +20,7 @@ pub const FREED: u32 = 1 << 29;
 /// Entries of a row of counts: the rounds of a batch, and one more.
 pub const ROW: usize = 32;
 
-/// Places in the words that steer rounds; rows of counts and what is deferred in each round begin at their first word.
+/// Places in the words that steer rounds; rows of counts begin at their first word.
 #[expect(missing_docs, reason = "named as in the reports of rounds")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Word {
@@ -174,7 +174,7 @@ pub fn shift_advance(words: &mut [u32], slots: &mut u32, phase: u32, rounds: u32
     if phase == 2 && words[Word::OutRounds as usize] == 0 {
         words[Word::Stuck as usize] = row[0];
     }
-    words[counts..counts + if phase == 2 { 4 } else { 2 } * ROW].fill(0);
+    words[counts..counts + if phase == 2 { 4 } else { 1 } * ROW].fill(0);
     words[counts] = left;
     match phase {
         0 => {
