@@ -33,6 +33,9 @@ struct Arguments {
     /// Does not hold results of a Vulkan device against the reference, which takes a while.
     #[arg(long)]
     unchecked: bool,
+    /// Also the largest case of the triangulations on a Vulkan device.
+    #[arg(long)]
+    full: bool,
     /// A small size and one run, to see that all works.
     #[arg(long)]
     quick: bool,
@@ -52,6 +55,8 @@ enum What {
     Degenerate,
     /// Peak memory.
     Memory,
+    /// Whole triangulations on the Vulkan device that `POLDER_DEVICE` names, or the best one.
+    Delaunay,
     /// The digital Voronoi diagram on the Vulkan device that `POLDER_DEVICE` names, or the best one.
     Voronoi,
 }
@@ -96,6 +101,11 @@ fn run(mut arguments: Arguments) -> Result<(), String> {
         for input in Input::PEERS {
             results.memory.push(memory::compare(input, arguments.points, &programs)?);
         }
+    }
+    if arguments.what.contains(&What::Delaunay) {
+        let runs = arguments.runs.unwrap_or(10);
+        let (quick, full) = (arguments.quick, arguments.full);
+        results.delaunay = Some(gpu::delaunay::run(runs, quick, full, !arguments.unchecked)?);
     }
     if arguments.what.contains(&What::Voronoi) {
         let runs = arguments.runs.unwrap_or(10);

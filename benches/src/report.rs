@@ -14,13 +14,14 @@ pub(crate) struct Results {
     pub(crate) peers: Vec<timing::Comparison>,
     pub(crate) degenerate: Vec<Vec<timing::Ratio>>,
     pub(crate) memory: Vec<memory::Comparison>,
+    pub(crate) delaunay: Option<crate::gpu::delaunay::Results>,
     pub(crate) voronoi: Option<crate::gpu::voronoi::Results>,
 }
 
 impl Results {
     pub(crate) fn new(points: usize, runs: usize) -> Self {
         let (peers, degenerate, memory) = (Vec::new(), Vec::new(), Vec::new());
-        Self { machine: Machine::this(), points, runs, peers, degenerate, memory, voronoi: None }
+        Self { machine: Machine::this(), points, runs, peers, degenerate, memory, delaunay: None, voronoi: None }
     }
 
     pub(crate) fn print_json(&self) {
@@ -64,6 +65,9 @@ impl Results {
                 (label(case.input, case.points), case.peaks.iter().map(cell).collect())
             });
             table(rows.collect());
+        }
+        if let Some(delaunay) = &self.delaunay {
+            delaunay.print();
         }
         if let Some(voronoi) = &self.voronoi {
             voronoi.print();

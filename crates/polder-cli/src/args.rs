@@ -66,7 +66,7 @@ pub(crate) enum ReportFormat {
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum BackendChoice {
-    /// The fastest one that is there
+    /// A GPU where that pays, else the CPU
     Auto,
     /// The CPU, by the fastest way there
     Cpu,
@@ -104,6 +104,11 @@ pub(crate) struct WayArgs {
     /// Where to compute
     #[arg(long, default_value = "auto")]
     pub(crate) backend: BackendChoice,
+
+    /// The Vulkan device, where one is used: its number or a part of its name in `polder devices` [default: what the
+    /// environment variable POLDER_DEVICE says, else the best GPU]
+    #[arg(long, value_name = "DEVICE")]
+    pub(crate) device: Option<String>,
 
     /// Threads of the CPU to use, at most 1024; 0 for as many as there are
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(..=1024))]

@@ -4,6 +4,7 @@ use crate::args::{CrossingChoice, DigestArgs, TriangulateArgs, WayArgs};
 use crate::failure::Failure;
 use crate::job::{DASH, Job, WriteTo, format_of, usage};
 use crate::verify::named_mesh;
+use polder::vulkan::Selection;
 use polder::{CrossingPolicy, Options, Output, Pslg, Triangulation};
 use polder_io::{Input, MeshFormat};
 use std::path::{Path, PathBuf};
@@ -112,7 +113,8 @@ fn summary(report: &polder::Report) -> String {
         s if s < 1.0 => format!("{:.1} ms", 1e3 * s),
         s => format!("{s:.2} s"),
     };
-    format!("polder: {} in {time} ({})", parts.join(", "), report.backend)
+    let device = report.device.as_ref().map_or_else(String::new, |device| format!(" on {}", device.name));
+    format!("polder: {} in {time} ({}{device}: {})", parts.join(", "), report.backend, report.why)
 }
 
 /// A .node written beside an .ele must not replace the .node that is the input.
@@ -153,6 +155,7 @@ fn compute_with(job: &Job, input: &Input, way: &WayArgs, crossings: CrossingPoli
         threads: way.threads.into(),
         grid: way.grid,
         max_crossings: way.max_crossings,
+        device: way.device.as_deref().map_or_else(Selection::default, Selection::parse),
         progress: Some(job.progress()),
         cancel: Some(job.cancel.clone()),
         ..Options::default()

@@ -186,6 +186,7 @@ fn errors_have_their_kind_and_exit_code() {
         ("binary.vtk", "# vtk DataFile Version 3.0\nx\nBINARY\n"),
         ("twice.ele", "2 3 0\n1 1 2 3\n2 1 2 4\n"),
         ("lonely.poly", "0 2 0 0\n1 0\n1 1 2\n0\n"),
+        ("free.node", "3 2 0 0\n1 0 0\n2 1 0\n3 0 1\n"),
     ]);
     let dir = folder.path();
     fs::create_dir(dir.join("dir.ele")).unwrap();
@@ -207,6 +208,7 @@ fn errors_have_their_kind_and_exit_code() {
         ("triangulate box.poly -o dir.ele", 3, "io", None),
         ("triangulate dir.ele --from poly -o x.ele", 3, "io", None),
         ("triangulate box.poly -o x.ele --backend vulkan", 3, "unsupported", None),
+        ("triangulate free.node -o x.ele --backend vulkan --device nothing", 3, "unsupported", None),
         ("verify box.poly binary.vtk", 3, "unsupported", None),
         ("generate uniform 9 -o missing/x.node", 3, "io", None),
     ];

@@ -2,7 +2,7 @@
 
 use crate::error::too_many_chain_vertices;
 use crate::report::Stopwatch;
-use crate::{Backend, Error, Options, Output, Report};
+use crate::{Error, Options, Output, Report};
 use polder_cpu::{CpuError, Delaunay};
 use polder_mesh::Pslg;
 
@@ -44,10 +44,7 @@ fn run(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     report.backend = "cpu";
     report.way = "divide and conquer, then constraints one by one";
     report.threads = rayon::current_num_threads();
-    report.why = match options.backend {
-        Backend::Auto => "there is no Vulkan backend yet".into(),
-        _ => "asked for".into(),
-    };
+    report.why = "asked for".into();
     Ok(Output { triangulation, report })
 }
 

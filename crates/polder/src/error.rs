@@ -1,3 +1,4 @@
+use polder_canonical::CanonicalError;
 use polder_constrain::ConstrainError;
 use polder_dualize::DualizeError;
 use polder_flip::FlipError;
@@ -74,6 +75,18 @@ pub enum Error {
         /// What does not hold.
         what: String,
     },
+    /// The device's memory does not suffice; found out before any work, or when some of it was refused.
+    #[error("{what}")]
+    OutOfMemory {
+        /// Bytes needed, and available.
+        what: String,
+    },
+    /// The device was lost, or did not answer in time: open it anew.
+    #[error("{what}")]
+    DeviceLost {
+        /// What happened.
+        what: String,
+    },
     /// The caller's cancel flag was set.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -81,7 +94,8 @@ pub enum Error {
 
 impl Error {
     /// A stable word for programs: `index_out_of_range`, `non_finite_coordinate`, `crossing_constraints`, `too_large`,
-    /// `seed_on_constraint`, `split_unfinished`, `unsupported`, `bound_exceeded`, `internal` or `cancelled`.
+    /// `seed_on_constraint`, `split_unfinished`, `unsupported`, `out_of_memory`, `device_lost`, `bound_exceeded`, `internal`
+    /// or `cancelled`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Input(MeshError::NonFiniteCoordinate { .. }) => "non_finite_coordinate",
@@ -96,6 +110,8 @@ impl Error {
             Self::BoundExceeded { .. } => "bound_exceeded",
             Self::Input(_) | Self::Internal { .. } => "internal",
             Self::Cancelled(_) => "cancelled",
+            Self::OutOfMemory { .. } => "out_of_memory",
+            Self::DeviceLost { .. } => "device_lost",
         }
     }
 }
@@ -112,6 +128,7 @@ impl From<VoronoiError> for Error {
             VoronoiError::GridSide { side, limit } => Self::Unsupported {
                 what: format!("a grid of {side} pixels a side: between 1 and {limit} are possible"),
             },
+            VoronoiError::NonFiniteCoordinate { point, axis } => MeshError::NonFiniteCoordinate { point, axis }.into(),
             VoronoiError::BoundExceeded { step, bound } => Self::BoundExceeded { stage: step, bound },
             other => Self::Internal { stage: "voronoi", what: other.to_string() },
         }
@@ -127,6 +144,29 @@ impl From<DualizeError> for Error {
             DualizeError::WalkLost { steps, .. } => Self::BoundExceeded { stage: "insert", bound: steps },
             other => Self::Internal { stage: "dualize", what: other.to_string() },
         }
+    }
+}
+
+impl From<polder_vulkan::Error> for Error {
+    fn from(error: polder_vulkan::Error) -> Self {
+        use polder_vulkan::Error as E;
+        // Loaders explain themselves in several lines.
+        let what = error.to_string().lines().next().unwrap_or_default().to_owned();
+        match error {
+            E::Cancelled => Cancelled.into(),
+            E::Bound { name, bound } => Self::BoundExceeded { stage: name, bound: bound.into() },
+            E::NoVulkan(_) | E::NoValidation | E::NoDevice { .. } | E::Unsupported { .. } => Self::Unsupported { what },
+            E::TooLarge { .. } | E::OutOfMemory { .. } => Self::OutOfMemory { what },
+            E::DeviceLost | E::Timeout { .. } => Self::DeviceLost { what },
+            // Recordings are made here.
+            _ => Self::Internal { stage: "vulkan", what },
+        }
+    }
+}
+
+impl From<CanonicalError> for Error {
+    fn from(error: CanonicalError) -> Self {
+        Self::Internal { stage: "canonical_order", what: error.to_string() }
     }
 }
 

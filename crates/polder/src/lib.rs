@@ -34,6 +34,7 @@
 
 mod cpu;
 mod error;
+mod gpu;
 mod options;
 mod reference;
 pub mod regions;
@@ -43,6 +44,7 @@ mod stages;
 pub mod verify;
 
 pub use error::Error;
+pub use gpu::{AUTO_FROM, Gpu, OnDevice};
 pub use options::{Backend, CrossingPolicy, Options, ProgressFn};
 pub use polder_mesh::{
     AddedVertex, Chains, ConstraintId, DVec2, Digest, Edge, EdgeId, MeshError, Progress, Pslg, TriangleId,
@@ -50,10 +52,13 @@ pub use polder_mesh::{
 };
 /// The compute engine: what devices there are.
 pub use polder_vulkan as vulkan;
-pub use report::{ConstraintReport, Output, PointReport, Report, StageReport};
+pub use report::{ConstraintReport, DeviceReport, KernelReport, Output, Place, PointReport, Report, StageReport};
 pub use stages::{Stages, stages};
 /// The crates of the stages, whose types [`Stages`] holds.
-pub use {polder_constrain as constrain, polder_dualize as dualize, polder_flip as flip, polder_voronoi as voronoi};
+pub use {
+    polder_canonical as canonical, polder_constrain as constrain, polder_dualize as dualize, polder_flip as flip,
+    polder_voronoi as voronoi,
+};
 
 /// Triangulates the whole convex hull of a PSLG's points, with every constraint as edges.
 ///
@@ -79,11 +84,10 @@ pub fn triangulate(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
 /// Constraints that cross are an error here.
 fn on_backend(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     match options.backend {
-        Backend::Auto | Backend::Cpu => cpu::triangulate(pslg, options),
+        Backend::Auto => gpu::auto(pslg, options),
+        Backend::Cpu => cpu::triangulate(pslg, options),
         Backend::Reference => reference::triangulate(pslg, options),
-        Backend::Vulkan => {
-            Err(Error::Unsupported { what: "there is no Vulkan backend yet; use the backend cpu".into() })
-        }
+        Backend::Vulkan => gpu::vulkan(pslg, options),
     }
 }
 

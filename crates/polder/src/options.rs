@@ -1,4 +1,5 @@
 use polder_mesh::{Monitor, Progress};
+use polder_vulkan::Selection;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -11,7 +12,7 @@ pub enum Backend {
     Auto,
     /// The CPU, by the fastest way there: divide and conquer, then constraints one by one.
     Cpu,
-    /// A Vulkan device.
+    /// A Vulkan device; to be used for more than one call, [`Gpu`](crate::Gpu) keeps it open.
     Vulkan,
     /// The stages' references in order, on one thread of the CPU: slow, and the way to see every stage at work.
     Reference,
@@ -47,6 +48,10 @@ pub struct Options {
     pub crossings: CrossingPolicy,
     /// The most vertices that are added where constraints cross.
     pub max_added_vertices: usize,
+    /// Which Vulkan device to take, where one is taken.
+    pub device: Selection,
+    /// Whether a Vulkan device times each kernel; that takes a little longer.
+    pub timestamps: bool,
     /// Called between rounds, possibly from another thread.
     pub progress: Option<ProgressFn>,
     /// Set it to true to stop: the call returns [`Error::Cancelled`](crate::Error::Cancelled) at the next round.
@@ -62,6 +67,8 @@ impl Default for Options {
             max_crossings: 1_000_000,
             crossings: CrossingPolicy::Error,
             max_added_vertices: 10_000_000,
+            device: Selection::default(),
+            timestamps: false,
             progress: None,
             cancel: None,
         }
@@ -91,6 +98,7 @@ impl std::fmt::Debug for Options {
             .field("max_crossings", &self.max_crossings)
             .field("crossings", &self.crossings)
             .field("max_added_vertices", &self.max_added_vertices)
+            .field("device", &self.device)
             .finish_non_exhaustive()
     }
 }

@@ -24,6 +24,8 @@ pub struct Report {
     pub way: &'static str,
     /// Threads of the CPU used.
     pub threads: usize,
+    /// The Vulkan device, if one did the work.
+    pub device: Option<DeviceReport>,
     /// What became of the points.
     pub points: PointReport,
     /// What became of the constraints.
@@ -64,12 +66,62 @@ pub struct ConstraintReport {
     pub constrained_edges: usize,
 }
 
+/// A Vulkan device, and what it was asked to do.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct DeviceReport {
+    /// Its name.
+    pub name: String,
+    /// `discrete`, `integrated`, `virtual`, `cpu` or `other`.
+    pub kind: &'static str,
+    /// Its driver.
+    pub driver: String,
+    /// How signs were decided on it.
+    pub arithmetic: &'static str,
+    /// Times that the host waited for it, transfers not counted.
+    pub host_waits: u32,
+    /// Kernels dispatched.
+    pub dispatches: u32,
+    /// The most bytes of its memory that were held at once through this [`Gpu`](crate::Gpu).
+    pub peak_bytes: u64,
+    /// Its kernels, if [`Options::timestamps`](crate::Options::timestamps) asked for their times.
+    pub kernels: Vec<KernelReport>,
+}
+
+/// One kernel of one stage, by timestamps around each dispatch.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct KernelReport {
+    /// The stage.
+    pub stage: &'static str,
+    /// The kernel.
+    pub name: &'static str,
+    /// Dispatches.
+    pub count: u64,
+    /// Seconds of all of them.
+    pub seconds: f64,
+}
+
+/// Where a stage ran.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Place {
+    /// On the CPU.
+    #[default]
+    Cpu,
+    /// On the Vulkan device.
+    Device,
+    /// Between the two: data moved, nothing computed.
+    Transfer,
+}
+
 /// One stage.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct StageReport {
     /// Its name.
     pub name: &'static str,
-    /// Seconds it took.
+    /// Where it ran.
+    pub on: Place,
+    /// Seconds it took; on a device, by its own clock.
     pub seconds: f64,
     /// What it counted: rounds, flips, missing points, bad cases, debris pixels and so on.
     pub counts: BTreeMap<&'static str, u64>,
@@ -88,16 +140,37 @@ impl Stopwatch {
         Self { start: now, last: now, stages: Vec::new() }
     }
 
-    /// Ends a stage, which began where the one before ended.
+    /// What follows is timed from here on.
+    pub(crate) fn skip(&mut self) {
+        self.last = Instant::now();
+    }
+
+    /// Ends a stage on the CPU, which began where the one before ended.
     pub(crate) fn stage<const N: usize>(&mut self, name: &'static str, counts: [(&'static str, u64); N]) {
+        self.stage_on(Place::Cpu, name, counts);
+    }
+
+    /// Ends a stage, which began where the one before ended.
+    pub(crate) fn stage_on<const N: usize>(&mut self, on: Place, name: &'static str, counts: [(&'static str, u64); N]) {
         let now = Instant::now();
         let seconds = (now - self.last).as_secs_f64();
         self.last = now;
-        self.stages.push(StageReport { name, seconds, counts: counts.into() });
+        self.stages.push(StageReport { name, on, seconds, counts: counts.into() });
     }
 }
 
 impl Report {
+    /// The stages that ran on the CPU.
+    pub fn stages_on_cpu(&self) -> impl Iterator<Item = &StageReport> {
+        self.stages.iter().filter(|stage| stage.on == Place::Cpu)
+    }
+
+    /// The times so far.
+    pub(crate) fn started(watch: Stopwatch) -> Self {
+        let seconds = watch.start.elapsed().as_secs_f64();
+        Self { seconds, stages: watch.stages, ..Self::default() }
+    }
+
     /// What became of the input, and the times.
     pub(crate) fn of(pslg: &Pslg, triangulation: &Triangulation, watch: Stopwatch) -> Self {
         let duplicates = triangulation.duplicates().count();

@@ -1,0 +1,60 @@
+//! Which backend a call takes.
+
+use super::Gpu;
+use crate::{Error, Options, Output, cpu};
+use polder_mesh::Pslg;
+use polder_vulkan::{Device, DeviceKind, DeviceOptions};
+
+/// From so many points on [`Backend::Auto`](crate::Backend::Auto) looks for a GPU: below, opening it takes longer than the
+/// CPU needs for everything.
+pub const AUTO_FROM: usize = 2_000_000;
+
+fn device_options(options: &Options) -> DeviceOptions {
+    DeviceOptions { selection: options.device.clone(), ..DeviceOptions::default() }
+}
+
+/// On a Vulkan device, or not at all.
+pub(crate) fn vulkan(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
+    refuse_constraints(pslg)?;
+    Gpu::open(&device_options(options))?.triangulate(pslg, options)
+}
+
+pub(super) fn refuse_constraints(pslg: &Pslg) -> Result<(), Error> {
+    if pslg.constraints().is_empty() {
+        return Ok(());
+    }
+    let what = "constraints are not inserted on Vulkan devices yet; use the backend cpu".to_owned();
+    Err(Error::Unsupported { what })
+}
+
+/// On a GPU where that pays and works, else on the CPU; the report says why.
+pub(crate) fn auto(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
+    let points = pslg.points().len();
+    if points < AUTO_FROM {
+        return on_cpu(pslg, options, format!("{points} points; a GPU pays from {AUTO_FROM} on"));
+    }
+    match on_gpu(pslg, options) {
+        Ok(mut output) => {
+            output.report.why = format!("a GPU, and {points} points; it pays from {AUTO_FROM} on");
+            Ok(output)
+        }
+        Err(error @ Error::Cancelled(_)) => Err(error),
+        Err(error) => on_cpu(pslg, options, format!("no GPU: {error}")),
+    }
+}
+
+fn on_gpu(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
+    refuse_constraints(pslg)?;
+    let device = Device::open(&device_options(options))?;
+    if device.info().kind == DeviceKind::Cpu {
+        let what = format!("{} is a CPU", device.info().name);
+        return Err(Error::Unsupported { what });
+    }
+    Gpu::on(&device)?.triangulate(pslg, options)
+}
+
+fn on_cpu(pslg: &Pslg, options: &Options, why: String) -> Result<Output, Error> {
+    let mut output = cpu::triangulate(pslg, options)?;
+    output.report.why = why;
+    Ok(output)
+}

@@ -1,0 +1,89 @@
+//! The kernels of all stages, and how they follow each other.
+
+use super::held::{Held, Reads};
+use crate::Error;
+use polder_canonical::gpu as canonical;
+use polder_dualize::gpu::{dualize, insert, shift, to_insert};
+use polder_flip::gpu::{self as flip, Arithmetic};
+use polder_mesh::DVec2;
+use polder_voronoi::GridMapping;
+use polder_voronoi::gpu as voronoi;
+use polder_vulkan::{Device, Recording, View};
+
+#[derive(Debug)]
+pub(super) struct Pipeline {
+    pub(super) bounds: voronoi::FindBounds,
+    pub(super) voronoi: voronoi::Stage,
+    pub(super) dualize: dualize::Stage,
+    pub(super) shift: shift::Stage,
+    pub(super) to_insert: to_insert::Stage,
+    pub(super) insert: insert::Stage,
+    pub(super) flip: flip::Stage,
+    pub(super) canonical: canonical::Stage,
+}
+
+impl Pipeline {
+    pub(super) fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
+        Ok(Self {
+            bounds: voronoi::FindBounds::new(device)?,
+            voronoi: voronoi::Stage::new(device)?,
+            dualize: dualize::Stage::new(device)?,
+            shift: shift::Stage::new(device, arithmetic)?,
+            to_insert: to_insert::Stage::new(device)?,
+            insert: insert::Stage::with_arithmetic(device, arithmetic)?,
+            flip: flip::Stage::with_arithmetic(device, arithmetic)?,
+            canonical: canonical::Stage::new(device, arithmetic)?,
+        })
+    }
+
+    /// Everything from the mapping to the canonical order. Nothing is looked at on the way: a stage that is given nonsense
+    /// by the one before does no harm, and the certificate at the end finds what none of them did.
+    pub(super) fn record(
+        &self,
+        recording: &mut Recording,
+        mapping: &GridMapping,
+        points: View<'_, DVec2>,
+        held: &Held,
+    ) -> Result<Reads, Error> {
+        let Held { mesh, size, .. } = held;
+        recording.section("voronoi");
+        let voronoi = self.voronoi.record(recording, mapping, points, &held.voronoi)?;
+        let (order, pixels, colors) = (held.voronoi.order(), held.voronoi.pixels(), held.voronoi.colors());
+        let sites = held.voronoi.site_count()?;
+
+        recording.section("dualize");
+        let input = dualize::Input { size: *size, colors, pixels, sites };
+        let output = dualize::Output { triangles: mesh.triangles(), links: mesh.links(), slots: mesh.slots() };
+        let dualize = self.dualize.record(recording, input, output, &held.dualize)?;
+
+        recording.section("shift");
+        let input = shift::Input { mapping, points, order, pixels, sites };
+        self.flip.record_start(recording, &held.flip);
+        held.hull.record_clear(recording);
+        let flips = shift::Flips { stage: &self.flip, buffers: &held.flip, tally: &held.hull };
+        let shift = self.shift.record(recording, input, mesh, flips, &held.shift)?;
+        let hull = held.hull.read(recording);
+
+        recording.section("insert");
+        let input = to_insert::Input { width: size[0], colors, pixels, sites };
+        self.to_insert.record(recording, input, &held.shift, &held.to_insert)?;
+        let input = insert::Input {
+            points: held.to_insert.points(),
+            starts: held.to_insert.starts(),
+            count: Some(held.to_insert.count()?),
+            sites,
+            freed: held.shift.freed(),
+        };
+        let insert = self.insert.record(recording, mesh, (&self.flip, &held.flip), &held.insert, input)?;
+
+        recording.section("flip");
+        held.flips.record_clear(recording);
+        self.flip.record_flip(recording, mesh, &held.flip, &held.flips)?;
+        let flip = held.flips.read(recording);
+
+        recording.section("canonical_order");
+        let input = canonical::Input { mesh, vertex_of: held.insert.vertex_of(), order };
+        let canonical = self.canonical.record(recording, &input, &held.canonical)?;
+        Ok(Reads { voronoi, dualize, shift, hull, insert, flip, canonical })
+    }
+}
