@@ -50,11 +50,13 @@ const uint GIVEN = 32u;
 const uint CHAIN = 14u;
 const uint ENDS = 30u;
 const uint APEX = 29u;
-// The last round after which edges were flipped; whether the hull could not be closed.
-const uint FLIPPED = 15u;
+// Whether edges are flipped in this round; whether the hull could not be closed.
+const uint FLIPS = 15u;
 const uint OPEN_HULL = 19u;
 // What is reported.
 const uint INSERTED = 16u;
+// The same before this round.
+const uint INSERTED_BEFORE = 20u;
 const uint DUPLICATES = 17u;
 // The lowest point whose walk did not end.
 const uint LOST = 18u;

@@ -74,8 +74,10 @@ void main() {
         link(links, 3u * own.x + 1u, 3u * own.y);
     }
     if (words.at[CHAIN] != 0u) {
-        if (i < slots.at[0] && i != own.x && i != own.y && !is_deleted(triangles, i)) {
-            join(i, apex_point, own);
+        for (uint t = i; t < slots.at[0]; t += item_stride()) {
+            if (t != own.x && t != own.y && !is_deleted(triangles, t)) {
+                join(t, apex_point, own);
+            }
         }
     } else if (i < 2u) {
         uint keeps = words.at[ENDS] == 0u ? words.at[ENDS + 1u] : words.at[ENDS];

@@ -7,7 +7,8 @@
 // - TURN, CLOCKWISE, COUNTERCLOCKWISE: the edge from the start to the next vertex around it;
 // - EXIT: the edge by which the segment leaves a triangle;
 // - CORNER: the segment's start and the corner behind that edge;
-// - RIGHT, LEFT: outside the hull, the ray from the center through the right or left end of a hull edge.
+// - RIGHT, LEFT: outside the hull, the ray from the center through the right or left end of a hull edge;
+// - BEYOND_HULL: where the walk starts from a ghost triangle, its hull edge.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "insert.glsl"
@@ -34,11 +35,11 @@ const uint EXIT = 3u;
 const uint CORNER = 4u;
 const uint RIGHT = 5u;
 const uint LEFT = 6u;
+const uint BEYOND_HULL = 7u;
 
 // What a step may lead to instead of a line.
-const uint BEGIN = 7u;
-const uint ALONG = 8u;
-const uint DONE = 9u;
+const uint BEGIN = 8u;
+const uint ALONG = 9u;
 const uint OUTSIDE = 10u;
 
 // How a walk ends.
@@ -83,8 +84,13 @@ uint walk(Point p, uint h, out uint place) {
     int left = 0;
     bool clockwise = false;
     bool first = true;
-    if (triangles.at[next_edge(h)] == GHOST) {
-        h = next_edge(h);
+    uvec3 corner = corners(triangles, h / 3u);
+    if (any(equal(corner, uvec3(GHOST)))) {
+        // Who was outside before mostly still is, and turning around a vertex of the hull can take long.
+        g = h - h % 3u + (corner.x == GHOST ? 0u : corner.y == GHOST ? 1u : 2u);
+        state = BEYOND_HULL;
+        a = point_at(positions, origin(triangles, g));
+        b = point_at(positions, destination(triangles, g));
     }
     while (steps > 0u) {
         steps--;
@@ -160,6 +166,14 @@ uint walk(Point p, uint h, out uint place) {
                 state = CORNER;
                 a = start;
                 b = point_at(positions, c);
+            }
+        } else if (state == BEYOND_HULL) {
+            state = sign > 0 ? OUTSIDE : BEGIN;
+            if (origin(triangles, h) == GHOST) {
+                h = next_edge(h);
+            }
+            if (state == BEGIN) {
+                continue;
             }
         } else if (state == CORNER) {
             if (sign == 0) {

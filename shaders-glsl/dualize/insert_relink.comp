@@ -88,15 +88,18 @@ void main() {
             links.at[other] = outer[k];
         }
     }
-    uint all = subgroupAdd(count);
-    uint before = subgroupExclusiveAdd(count);
+    // With few points left to insert, flips are left to stage 5.
+    bool flips = words.at[NEXT] >= words.at[INSERTED] - words.at[INSERTED_BEFORE];
+    uint listed = flips ? count : 0u;
+    uint all = subgroupAdd(listed);
+    uint before = subgroupExclusiveAdd(listed);
     uint base = 0u;
     if (subgroupElect() && all > 0u) {
         base = atomicAdd(edge_count.at[0], all);
     }
     base = subgroupBroadcastFirst(base) + before;
     for (uint k = 0u; k < count; k++) {
-        if (base + k < edge_limit) {
+        if (flips && base + k < edge_limit) {
             edges.at[base + k] = outer[k];
         }
         if (is_ghost(triangles, parts[k])) {
@@ -114,6 +117,8 @@ void main() {
     }
     // Of this dispatch only this invocation is left.
     words.at[FINISHED] = 0u;
+    words.at[FLIPS] = uint(flips);
+    words.at[INSERTED_BEFORE] = words.at[INSERTED];
     uint next = words.at[NEXT];
     uvec3 size = groups_of(next);
     for (uint k = 0u; k < 3u; k++) {

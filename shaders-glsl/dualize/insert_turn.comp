@@ -1,5 +1,5 @@
-// Insertion, between the hull and the flips of a round. Flips follow once for each round of insertion: where there was none,
-// the list is emptied. A hull that is not closed by now ends it all.
+// Insertion, between the hull and the flips of a round. If none are to be made, also because there was no insertion, the
+// list is emptied. A hull that is not closed by now ends it all.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "insert.glsl"
@@ -14,10 +14,10 @@ void main() {
     if (item_index() != 0u) {
         return;
     }
-    if (words.at[FLIPPED] == words.at[ROUND]) {
+    if (words.at[FLIPS] == 0u) {
         edge_count.at[0] = 0u;
     }
-    words.at[FLIPPED] = words.at[ROUND];
+    words.at[FLIPS] = 0u;
     if (reflex.at[0] != 0u) {
         words.at[OPEN_HULL] = 1u;
         words.at[WAITING] = 0u;

@@ -38,7 +38,6 @@ void main() {
         words.at[NEXT] = 0u;
         words.at[PARITY] = 0u;
         words.at[ROUND] = 1u;
-        words.at[FLIPPED] = 1u;
         words.at[FINISHED] = 0u;
         words.at[INSERTED] = 0u;
         words.at[DUPLICATES] = 0u;

@@ -27,7 +27,7 @@ const FINISHED: usize = 8;
 const CENTER: usize = 9;
 const SITES: usize = 13;
 const CHAIN: usize = 14;
-const FLIPPED: usize = 15;
+const FLIPS: usize = 15;
 const INSERTED: usize = 16;
 const DUPLICATES: usize = 17;
 const LOST: usize = 18;
@@ -340,6 +340,8 @@ fn insert_relink() {
         let losers = round.graft(&mut places);
         let mut words = round.words();
         words[NEXT] = losers.len() as u32;
+        words[INSERTED] = round.rounds.iter().filter(|&&round| round == 1).count() as u32;
+        let flips = words[NEXT] >= words[INSERTED];
         let on = round.on(&mut gpu, &places, &words);
         let room = 6 * round.mesh.slots();
         let (edges, hull_edges) = (gpu.buffer(&vec![0; room]), gpu.buffer(&vec![0; room]));
@@ -363,7 +365,7 @@ fn insert_relink() {
         };
         run::<InsertRelink>(&mut gpu, round.waiting.len(), &arguments);
         let Round { mesh, slots, waiting, claims, rounds, .. } = &mut round;
-        let wanted = expected::insert_relink(mesh, slots, waiting, &places, claims, rounds, 1);
+        let wanted = expected::insert_relink(mesh, slots, waiting, &places, claims, rounds, 1, flips);
         mesh.check().unwrap();
         assert!(on.mesh.download(&mut gpu.engine).unwrap() == *mesh, "{name}: mesh");
         assert!(gpu.fetch(on.claims.view()) == claims.as_flattened(), "{name}: claims");
@@ -377,8 +379,8 @@ fn insert_relink() {
             assert!(found == wanted, "{name}: lists");
         }
         let words = gpu.fetch(on.words.view());
-        let turned = [WAITING, NEXT, PARITY, ROUND, FINISHED].map(|at| words[at]);
-        assert_eq!(turned, [losers.len() as u32, 0, 1, 2, 0], "{name}");
+        let turned = [WAITING, NEXT, PARITY, ROUND, FINISHED, FLIPS].map(|at| words[at]);
+        assert_eq!(turned, [losers.len() as u32, 0, 1, 2, 0, u32::from(flips)], "{name}");
         assert_eq!(words[GROUPS] as usize, losers.len().div_ceil(256), "{name}");
     }
 }
@@ -386,16 +388,16 @@ fn insert_relink() {
 #[test]
 fn insert_turn() {
     let mut gpu = Gpu::open();
-    for (reflex, round, flipped) in [(0, 1, 1), (0, 2, 1), (3, 2, 1), (3, 2, 2), (0, 9, 8)] {
+    for (reflex, flips) in [(0, 0), (0, 1), (3, 0), (3, 1)] {
         let mut before = words();
-        [before[WAITING], before[ROUND], before[FLIPPED]] = [17, round, flipped];
+        [before[WAITING], before[FLIPS]] = [17, flips];
         let (pending, edges, words) = (gpu.buffer(&[reflex]), gpu.buffer(&[5]), gpu.buffer(&before));
         let arguments = InsertTurnArgs { reflex: pending.view(), edge_count: edges.view(), words: words.view() };
         run::<InsertTurn>(&mut gpu, 1, &arguments);
-        assert_eq!(gpu.fetch(edges.view())[0], expected::insert_turn(5, round, flipped));
+        assert_eq!(gpu.fetch(edges.view())[0], expected::insert_turn(5, flips == 1));
         let found = gpu.fetch(words.view());
         let open = u32::from(reflex != 0);
-        assert_eq!([found[FLIPPED], found[OPEN_HULL], found[WAITING]], [round, open, 17 * (1 - open)]);
+        assert_eq!([found[FLIPS], found[OPEN_HULL], found[WAITING]], [0, open, 17 * (1 - open)]);
     }
 }
 

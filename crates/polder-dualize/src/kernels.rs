@@ -242,7 +242,7 @@ impl Shader for InsertApex {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "9e8311d19ad48fcae5a5bc5bbf365d92ed5473b82eb9bff443d8ad119054cf49",
+        source_hash: "8d8df82ea3f91c4252e71ea11a71b312a04ee0234b1f2838ce3265257953766e",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -298,7 +298,7 @@ impl Shader for InsertBegin {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "b3b32be764ae6301a4b1c6e07babd233cb0e747e9961542d04c279a498471d4e",
+        source_hash: "fcae7be88cc596f2986cbe99db2e4c0cfe52e658aec0b76f608b9cd587190b0a",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -355,7 +355,7 @@ impl Shader for InsertClaim {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "efdab64374645c021117153262af3643f3415af5d8e0781f7956325981e16e79",
+        source_hash: "977d8325ec5efe91aec89139b6bf1c1d7adb985d4d68fd0330be2ca691d3906c",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -415,7 +415,7 @@ impl Shader for InsertEnds {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "bcc2cddaba3cf97e6f300734411962007a2ce218b7bdcc623fd0caa05e060c16",
+        source_hash: "14491d1307ad2c93c72e172d1fd7e7db9d30ac2a3d36aeaee30d99b6403e1286",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -488,7 +488,7 @@ impl Shader for InsertGraft {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "e6de87291c1a5d3c222f7b1ed86244adc64dc655228d25453a4e18a9679e0404",
+        source_hash: "1a6dbe81b114f66359913a2233d1f407f94c306a7689e77680c34ed6c3da9d48",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -550,7 +550,7 @@ impl Shader for InsertJoin {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "f80d3d9ef969c896aa299a4f66691ba10677b14d19e208385e72e726033bf46f",
+        source_hash: "11460827601bc370018c95f9d60cafca2bdaa753d937c2b0cd38b6b1c31bd085",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -573,7 +573,8 @@ impl Shader for InsertJoin {
 /// - TURN, CLOCKWISE, COUNTERCLOCKWISE: the edge from the start to the next vertex around it;
 /// - EXIT: the edge by which the segment leaves a triangle;
 /// - CORNER: the segment's start and the corner behind that edge;
-/// - RIGHT, LEFT: outside the hull, the ray from the center through the right or left end of a hull edge.
+/// - RIGHT, LEFT: outside the hull, the ray from the center through the right or left end of a hull edge;
+/// - BEYOND_HULL: where the walk starts from a ghost triangle, its hull edge.
 #[derive(Debug, Clone, Copy)]
 pub enum InsertLocate {}
 
@@ -629,7 +630,7 @@ impl Shader for InsertLocate {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "ffa455599523fa78a908128c09ee7e2a327558a65e0c01e133befa1330e17312",
+        source_hash: "3812b6f047caf223d7a64d9e197eb544e33887d9d11a017b6bf4d3c512d7c590",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -720,7 +721,7 @@ impl Shader for InsertRelink {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "92396265ac1ffbc2ce13255f0d173b52dad66d968069f97055755a2eeadbe365",
+        source_hash: "7b0fc5dd811c780809513cfc3342f89859410dff8b8e27cd7a32f1dbeaa94681",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -743,8 +744,8 @@ impl Shader for InsertRelink {
     }
 }
 
-/// Insertion, between the hull and the flips of a round. Flips follow once for each round of insertion: where there was none,
-/// the list is emptied. A hull that is not closed by now ends it all.
+/// Insertion, between the hull and the flips of a round. If none are to be made, also because there was no insertion, the
+/// list is emptied. A hull that is not closed by now ends it all.
 #[derive(Debug, Clone, Copy)]
 pub enum InsertTurn {}
 
@@ -775,7 +776,7 @@ impl Shader for InsertTurn {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "6aa90c5a0e86cd57e334b4ca5d8a73dbc21e62069febb6e38a0eb15bf83e0ccb",
+        source_hash: "f82b82cade64d843e2971c983d8550de3f06e07d36084e7a136faf9e4a04ee01",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -836,7 +837,7 @@ impl Shader for InsertWait {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "11185bbf0798a3c7c81c72ab7b3c146b870cdc8eb95e92eb10d04ee17bcf05f6",
+        source_hash: "250eae61d588c6b0fe9908eba03fb83900fe2de411c550eeaaf6a2aa36bb1f60",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

@@ -340,7 +340,7 @@ impl Stage {
         }
         recording.dispatch(&self.apex, [groups, 1, 1], &InsertApexArgs { positions, words, count });
         let arguments = InsertJoinArgs { triangles, links, positions, slots: mesh.slots(), freed: input.freed, words };
-        recording.dispatch(&self.join, groups_for(mesh.capacity(), WORKGROUP), &arguments);
+        recording.dispatch(&self.join, [groups, 1, 1], &arguments);
     }
 
     fn record_round(

@@ -10,13 +10,14 @@
 //! 3. A point that got all it claimed is inserted. The two triangles more that there are then go to the two slots that the
 //!    point brings along: so each slot is known beforehand, and nobody has to count.
 //! 4. Ghost flips until the hull is convex again.
-//! 5. One round of flips, over what is new and what the last round of flips left. The other points keep their container
-//!    as the place from which the next walk starts.
+//! 5. If at least as many points still wait as were inserted, one round of flips, over what is new and what the last
+//!    round of flips left. The other points keep their container as the place from which the next walk starts.
 //!
 //! The least key of all always gets what it claims, so each round inserts a point. Where many points crowd in one
 //! triangle, a random one leaves a fraction of them in each part, so that rounds go with the logarithm of their number;
-//! and the flip round keeps the parts from becoming slivers: without it points in a cluster flip several times as often
-//! later, and flipping to the end in each round gains nothing more.
+//! and the flip rounds keep the parts from becoming slivers: without them points in a cluster flip twice as often later and
+//! need a fifth more rounds. Flipping to the end in each round gains nothing more, nor does flipping when few points wait:
+//! these flips are then made in stage 5, which has to test all edges anyway.
 //!
 //! A mesh without finite triangles is given some first (module `bootstrap`).
 //!
@@ -152,15 +153,19 @@ impl Round<'_> {
         // Steps 2 and 3.
         insert_claim(mesh, waiting, &mut places, claims);
         let later = insert_graft(mesh, slots, waiting, &mut places, claims, rounds, round);
-        out.inserted += places.iter().filter(|[place, _]| *place != NONE && place & WON != 0).count() as u64;
-        let [edges, ghosts] = insert_relink(mesh, slots, waiting, &places, claims, rounds, round);
+        let winners = places.iter().filter(|[place, _]| *place != NONE && place & WON != 0).count();
+        out.inserted += winners as u64;
+        let flips = later.len() >= winners;
+        let [edges, ghosts] = insert_relink(mesh, slots, waiting, &places, claims, rounds, round, flips);
         edges.iter().for_each(|&h| self.active.push(h));
 
         // Steps 4 and 5.
         let mut hull = Active::hull(&GhostMesh::default());
         ghosts.iter().for_each(|&h| hull.push(h));
         out.hull += self.close(&mut out.mesh, hull)?;
-        if !self.active.is_empty() {
+        if !flips {
+            self.active = Active::new();
+        } else if !self.active.is_empty() {
             let tests = self.active.tests();
             let flips = flip_round(&mut out.mesh, self.positions, &mut self.active);
             out.flips += FlipReport { rounds: 1, flips, tests: self.active.tests() - tests };

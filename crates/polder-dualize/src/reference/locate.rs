@@ -9,6 +9,8 @@
 //!    on the edge. If it is, the walk enters the next triangle, where the new corner decides between the other two
 //!    edges; if the segment leads through the corner, go on as along an edge.
 //!
+//! A walk that starts from a ghost triangle first asks whether the point lies outside its hull edge: then that is all.
+//!
 //! It is exact: a segment through vertices and along edges is followed through them. It ends, because each triangle
 //! and edge is met in the order of the segment and none of them twice. A walk that goes to any neighbor on whose side
 //! the point lies can go round in circles in a triangulation that is not Delaunay.
@@ -57,6 +59,13 @@ impl Walk<'_> {
         let mesh = self.mesh;
         let p = self.at(i);
         let limit = self.steps + 12 * mesh.slots() as u64 + 16;
+        // Who was outside before mostly still is, and turning around a vertex of the hull can take long.
+        if let Some(k) = mesh.triangles[(from / 3) as usize].iter().position(|&v| v == GHOST) {
+            let hull = from - from % 3 + k as u32;
+            if self.side(mesh.origin(hull), mesh.destination(hull), p) == Sign::Positive {
+                return Ok(Place::Outside(from / 3));
+            }
+        }
         let mut h = if mesh.origin(from) == GHOST { next(from) } else { from };
         loop {
             if p == self.at(mesh.origin(h)) {

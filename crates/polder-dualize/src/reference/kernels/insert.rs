@@ -241,7 +241,8 @@ fn split_side(mesh: &mut GhostMesh, side: u32, p: u32, s: u32) {
 }
 
 /// Outer edges of what was split get their links, and claims are cleared. Returns half-edges: of the edges around new
-/// vertices, and of all edges of new ghost triangles.
+/// vertices, if they are to be flipped, and of all edges of new ghost triangles.
+#[allow(clippy::too_many_arguments, reason = "those of a kernel")]
 pub fn insert_relink(
     mesh: &mut GhostMesh,
     slots: &[[u32; 2]],
@@ -250,6 +251,7 @@ pub fn insert_relink(
     claims: &mut [[u32; 3]],
     rounds: &[u32],
     round: u32,
+    flips: bool,
 ) -> [Vec<u32>; 2] {
     let [mut edges, mut hull] = [Vec::new(), Vec::new()];
     for (&[point, _], &[place, other]) in waiting.iter().zip(places) {
@@ -277,7 +279,7 @@ pub fn insert_relink(
                 Some(new) => mesh.links[(side / 3) as usize][side as usize % 3] = new,
                 None => mesh.link(side, old),
             }
-            edges.push(side);
+            edges.extend(flips.then_some(side));
         }
         let parts = [h / 3, s, u].into_iter().chain(on_edge.then_some(other));
         for t in parts.filter(|&t| mesh.is_ghost(t as usize)) {
@@ -313,9 +315,9 @@ fn renamed(
     })
 }
 
-/// How many of the listed edges a round of flips takes: flips follow once for each round of insertion.
-pub fn insert_turn(edge_count: u32, round: u32, flipped: u32) -> u32 {
-    if flipped == round { 0 } else { edge_count }
+/// How many of the listed edges a round of flips takes: all or none.
+pub fn insert_turn(edge_count: u32, flips: bool) -> u32 {
+    if flips { edge_count } else { 0 }
 }
 
 /// The triangles that a place claims.
