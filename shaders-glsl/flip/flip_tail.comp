@@ -22,7 +22,7 @@ layout(push_constant, std430) uniform Args {
     uint scope;
     uint least; // so many illegal edges are left to other kernels, four times as many once it has begun
     uint most; // rounds
-    uint most_tests;
+    uint most_flips; // illegal edges taken, but for those of the last round
 };
 
 // Edges in shared memory, of even and of odd rounds.
@@ -63,7 +63,7 @@ void main() {
     uint limit = least;
     uint rounds = 0u;
     uint taken = 0u;
-    while (count != 0u && count < limit && rounds < most && taken <= most_tests) {
+    while (count != 0u && count < limit && rounds < most && taken <= most_flips) {
         limit = min(least, 0x3fffffffu) * 4u;
         rounds++;
         round++;

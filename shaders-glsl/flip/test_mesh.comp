@@ -1,5 +1,5 @@
-// Steps 1 and 2 of the first round: each edge of the mesh is tested, and illegal ones claim their two triangles. A workgroup
-// reads some triangles, gathers the edges of which they are the lower side, and tests those densely.
+// Steps 1 and 2 of the first round: each edge of the mesh is tested, one triangle an invocation, and illegal ones claim
+// their two triangles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "appending.glsl"
@@ -19,71 +19,76 @@ layout(push_constant, std430) uniform Args {
     uint parity;
 };
 
-// Triangles of an invocation.
-const uint EACH = 2u;
-// The half-edges to be tested, and what lies on their far sides.
-shared uint gathered[3u * EACH * WORKGROUP];
-shared uint far[3u * EACH * WORKGROUP];
 shared uint tests_of_group;
 
 void main() {
-    uint rank = gl_LocalInvocationIndex;
-    uint end = slots.at[0];
-    if (rank == 0u) {
+    uint t = item_index();
+    if (gl_LocalInvocationIndex == 0u) {
         tests_of_group = 0u;
     }
     barrier();
     uint tests = 0u;
-    uint wanted = 0u; // a bit for each half-edge
-    uint apexes[3u * EACH];
-    [[unroll]] for (uint e = 0u; e < EACH; e++) {
-        uint t = (group_index() * EACH + e) * WORKGROUP + rank;
-        uvec3 corner = uvec3(DELETED);
-        uvec3 row = uvec3(NONE);
-        if (t < end) {
-            corner = corners(triangles, t);
+    uint found = 0u; // a bit for each half-edge
+    uvec3 row = uvec3(NONE);
+    if (t < slots.at[0]) {
+        uvec3 corner = corners(triangles, t);
+        bool wanted = scope == SCOPE_ALL || any(equal(corner, uvec3(GHOST)));
+        if (wanted && corner.x != DELETED) {
             row = uvec3(links.at[3u * t], links.at[3u * t + 1u], links.at[3u * t + 2u]);
-        }
-        [[unroll]] for (uint k = 0u; k < 3u; k++) {
-            bool in_scope = scope == SCOPE_ALL || corner[(k + 1u) % 3u] == GHOST || corner[(k + 2u) % 3u] == GHOST;
-            if (corner.x != DELETED && in_scope && 3u * t + k < (row[k] & HALF_EDGE)) {
-                tests++;
-                if ((row[k] & CONSTRAINED) == 0u) {
-                    wanted |= 1u << (3u * e + k);
-                    apexes[3u * e + k] = triangles.at[row[k]];
+            // What lies on the far sides, where this is the lower side of the edge; read ahead, all at once.
+            uvec3 far = uvec3(GHOST);
+            bvec3 lower;
+            [[unroll]] for (uint k = 0u; k < 3u; k++) {
+                uint h = 3u * t + k;
+                bool is_ghost_edge = corner[(k + 1u) % 3u] == GHOST || corner[(k + 2u) % 3u] == GHOST;
+                lower[k] = h < (row[k] & HALF_EDGE) && (scope == SCOPE_ALL || is_ghost_edge);
+                tests += uint(lower[k]);
+                lower[k] = lower[k] && (row[k] & CONSTRAINED) == 0u;
+                if (lower[k]) {
+                    far[k] = triangles.at[row[k]];
                 }
             }
-        }
-    }
-    uint total;
-    uint place = sum_before(bitCount(wanted), total);
-    [[unroll]] for (uint j = 0u; j < 3u * EACH; j++) {
-        if ((wanted >> j & 1u) != 0u) {
-            gathered[place] = 3u * ((group_index() * EACH + j / 3u) * WORKGROUP + rank) + j % 3u;
-            far[place] = apexes[j];
-            place++;
+            if (any(lower)) {
+                // Each position is read once: reading is what takes the time.
+                Point at[3] = Point[3](
+                    corner_at(positions, corner.x), corner_at(positions, corner.y), corner_at(positions, corner.z)
+                );
+                [[dont_unroll]] for (uint k = 0u; k < 3u; k++) {
+                    if (lower.x) {
+                        Point beyond = corner_at(positions, far.x);
+                        bool is = is_illegal(corner.x, corner.y, corner.z, far.x, at[0], at[1], at[2], beyond);
+                        found |= uint(is) << k;
+                    }
+                    // Edge by edge comes to the front.
+                    corner = corner.yzx;
+                    far = far.yzx;
+                    lower = lower.yzx;
+                    Point front = at[0];
+                    at[0] = at[1];
+                    at[1] = at[2];
+                    at[2] = front;
+                }
+            }
         }
     }
     if (tests != 0u) {
         atomicAdd(tests_of_group, tests);
     }
+    uint total;
+    uint before = sum_before(bitCount(found), total);
+    if (gl_LocalInvocationIndex == 0u && total != 0u) {
+        place_of_group = atomicAdd(words.at[ILLEGAL_COUNT(parity)], total);
+    }
     barrier();
-    // The same number of turns for the whole workgroup.
-    for (uint begin = 0u; begin < total; begin += WORKGROUP) {
-        bool illegal_edge = false;
-        uint h = 0u;
-        if (begin + rank < total) {
-            h = gathered[begin + rank];
-            uint a = apex(triangles, h);
-            illegal_edge = is_illegal(positions, a, origin(triangles, h), destination(triangles, h), far[begin + rank]);
-        }
-        uint to = place_in(words, ILLEGAL_COUNT(parity), illegal_edge);
-        if (illegal_edge) {
-            claim(state, stride, parity, h, links.at[h]);
-            illegal.at[to] = h;
+    uint place = place_of_group + before;
+    [[unroll]] for (uint k = 0u; k < 3u; k++) {
+        if ((found >> k & 1u) != 0u) {
+            uint h = 3u * t + k;
+            claim(state, stride, parity, h, row[k]);
+            illegal.at[place++] = h;
         }
     }
-    if (rank == 0u && tests_of_group != 0u) {
+    if (gl_LocalInvocationIndex == 0u && tests_of_group != 0u) {
         add_wide(report, REPORT_TESTS, tests_of_group);
         if (words.at[ANY_TESTED] == 0u && atomicExchange(words.at[ANY_TESTED], 1u) == 0u) {
             atomicAdd(report.at[REPORT_ROUNDS], 1u);

@@ -355,7 +355,7 @@ fn flip_tail() {
                 scope: 0,
                 least: least as u32,
                 most: most as u32,
-                most_tests: u32::MAX,
+                most_flips: u32::MAX,
             };
             run::<FlipTail>(&mut gpu, EXACT, 1, &arguments);
             let limits = [least, most];

@@ -74,7 +74,7 @@ impl Shader for AdvanceEdges {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "2fb3c2ad700a6ba7ab790ac48496d7f9ddb8fbe07125d5b2c1a87d2e78d1a156",
+        source_hash: "c8f594d9997ead1e59fc632d5936cf9223fbcdd52a70e753e914d3b54cc14ba2",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -215,7 +215,7 @@ pub struct FlipTailArgs<'a> {
     /// a value
     pub most: u32,
     /// a value
-    pub most_tests: u32,
+    pub most_flips: u32,
 }
 
 impl Shader for FlipTail {
@@ -244,7 +244,7 @@ impl Shader for FlipTail {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "3fd5f1183a8638af7af6e9acece8b037cd0413cc1cae2e17ac0ee1d948e83a66",
+        source_hash: "5fcebbac8a2cba26714154da7b54188ad968c3f79fa96fce7d6a3dda2cef9f70",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -264,7 +264,7 @@ impl Shader for FlipTail {
         encoder.value(88, args.scope);
         encoder.value(92, args.least);
         encoder.value(96, args.most);
-        encoder.value(100, args.most_tests);
+        encoder.value(100, args.most_flips);
     }
 }
 
@@ -500,7 +500,7 @@ impl Shader for TestEdges {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "71bb44ae7e0387b1924c3c2f79a747f4d6a0eb55a32811832c63b4cf82b2bc3b",
+        source_hash: "3e8743d3eb8da779767d7797cd74f906821815f93749d67069ce60e51980f900",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -522,8 +522,8 @@ impl Shader for TestEdges {
     }
 }
 
-/// Steps 1 and 2 of the first round: each edge of the mesh is tested, and illegal ones claim their two triangles. A workgroup
-/// reads some triangles, gathers the edges of which they are the lower side, and tests those densely.
+/// Steps 1 and 2 of the first round: each edge of the mesh is tested, one triangle an invocation, and illegal ones claim
+/// their two triangles.
 #[derive(Debug, Clone, Copy)]
 pub enum TestMesh {}
 
@@ -585,7 +585,7 @@ impl Shader for TestMesh {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "84c15013b8df63c01af0f31a1f14137c7d9a465f4bb2c9bac4874ef7e5a74871",
+        source_hash: "dd7f86c42f58c266429a9c534dd982356162a3c56e86f224cb995ebd0ad67bf9",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

@@ -4,8 +4,7 @@
 //! [`Stage`] holds the kernels, [`Buffers`] the memory for one number of slots, [`Mesh`] what is flipped. A round:
 //!
 //! 1. *Test and claim.* Illegal edges are listed, and claim their two triangles by an atomic minimum of the priority. The
-//!    first round reads the whole mesh, some triangles a workgroup, which gathers the edges of which they are the lower side
-//!    and tests those without idle invocations.
+//!    first round reads the whole mesh, a triangle an invocation, which tests the edges of which that is the lower side.
 //! 2. *Flip.* An edge that has both its triangles is flipped: their corners and links are nobody else's to write. Links
 //!    outward keep the names that the neighbors had before the round; a stamp on each triangle says that it was flipped in
 //!    this round, and along which edge.
@@ -37,21 +36,38 @@ mod record;
 pub use buffers::{Buffers, EdgeList, Tally, TallyRead};
 pub use mesh::{CONSTRAINED, HALF_EDGE, MOST_SLOTS, Mesh};
 pub use predicates::{Arithmetic, Kernels, Signs};
-pub use record::TAIL_ROUNDS;
 
 use crate::kernels::*;
 use polder_vulkan::{Device, DeviceKind, Error, Estimate, Kernel};
 
-/// Workgroups of a wide kernel on a GPU, and on a CPU that plays one.
-const GROUPS: u32 = 1056;
-const FEW_GROUPS: u32 = 16;
+/// Rounds that [`Stage::record_close_hull`] takes at least before it leaves a hull that is not closed.
+pub const TAIL_ROUNDS: u32 = 8192;
+
+/// How much is done in one dispatch.
+#[derive(Debug)]
+struct Pace {
+    /// Workgroups of wide kernels, which stride over their items.
+    groups: u32,
+    /// Rounds of a tail, and illegal edges taken in all of them, but for those of the last.
+    rounds: u32,
+    flips: u32,
+    /// Rounds of a tail that closes a hull, and tails.
+    hull_rounds: u32,
+    hull_tails: u32,
+}
+
+impl Pace {
+    /// No dispatch takes long.
+    const GPU: Self = Self { groups: 1056, rounds: 8192, flips: 1 << 20, hull_rounds: TAIL_ROUNDS, hull_tails: 2 };
+    /// lavapipe leaves a shader, without a word, once its loops have made 65535 turns, those of the predicates included.
+    const CPU: Self = Self { groups: 64, rounds: 16, flips: 512, hull_rounds: TAIL_ROUNDS / 8, hull_tails: 8 };
+}
 
 /// The kernels of the stage on one device.
 #[derive(Debug)]
 pub struct Stage {
     device: Device,
-    /// Workgroups of wide kernels, which stride over their items.
-    groups: [u32; 3],
+    pace: Pace,
     test_mesh: Kernel<TestMesh>,
     test_edges: Kernel<TestEdges>,
     flip_edges: Kernel<FlipEdges>,
@@ -76,10 +92,9 @@ impl Stage {
     ///
     /// Those of the device.
     pub fn with_arithmetic(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
-        let groups = if device.info().kind == DeviceKind::Cpu { FEW_GROUPS } else { GROUPS };
         Ok(Self {
             device: device.clone(),
-            groups: [groups, 1, 1],
+            pace: if device.info().kind == DeviceKind::Cpu { Pace::CPU } else { Pace::GPU },
             test_mesh: arithmetic.kernel(device, &[])?,
             test_edges: arithmetic.kernel(device, &[])?,
             flip_edges: Kernel::new(device, &[])?,

@@ -8,19 +8,13 @@ use polder_vulkan::{Error, Recording, groups_for};
 const NONE: u32 = u32::MAX;
 /// Invocations of a workgroup, the same in all kernels.
 const WORKGROUP: u32 = 256;
-/// Triangles of an invocation of `test_mesh`.
-const EACH: u32 = 2;
 
 /// Wide rounds between two tails: an even number.
 const WIDE: usize = 6;
 /// Fewer illegal edges than these are left to the tail, which keeps them up to four times as many.
 const FEW: u32 = 256;
-/// Rounds of one tail, and tests: so that no dispatch takes long.
-pub const TAIL_ROUNDS: u32 = 8192;
-const TAIL_TESTS: u32 = 1 << 20;
-/// Of closing a hull: wide rounds, an even number, and tails.
+/// Wide rounds of closing a hull: an even number.
 const HULL_WIDE: usize = 2;
-const HULL_TAILS: usize = 2;
 
 /// Which edges may be flipped.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -71,7 +65,7 @@ impl Stage {
             for turn in 0..WIDE {
                 self.advance(body, round, turn % 2, FEW);
             }
-            self.tail(body, round, FEW);
+            self.tail(body, round, FEW, self.pace.rounds);
         });
         Ok(())
     }
@@ -105,7 +99,7 @@ impl Stage {
             limit: list.limit(),
             parity: 0,
         };
-        recording.dispatch(&self.relink_edges, self.groups, &arguments);
+        recording.dispatch(&self.relink_edges, [self.pace.groups, 1, 1], &arguments);
         Ok(())
     }
 
@@ -134,17 +128,16 @@ impl Stage {
                 self.test_list(recording, round, list);
                 self.flip(recording, round, Some(list), 0, 0);
                 self.hand_on(recording, round, 0);
-                self.tail(recording, round, NONE);
             }
             None => {
                 self.test_mesh(recording, round);
                 for turn in 0..HULL_WIDE {
                     self.advance(recording, round, turn % 2, FEW);
                 }
-                for _ in 0..HULL_TAILS {
-                    self.tail(recording, round, NONE);
-                }
             }
+        }
+        for _ in 0..self.pace.hull_tails {
+            self.tail(recording, round, NONE, self.pace.hull_rounds);
         }
         Ok(())
     }
@@ -171,7 +164,7 @@ impl Stage {
             scope: scope as u32,
             parity: 0,
         };
-        recording.dispatch(&self.test_mesh, groups_for(mesh.capacity(), EACH * WORKGROUP), &arguments);
+        recording.dispatch(&self.test_mesh, groups_for(mesh.capacity(), WORKGROUP), &arguments);
     }
 
     /// A list, and the claims of a round over it.
@@ -193,7 +186,7 @@ impl Stage {
             scope: scope as u32,
             parity: 0,
         };
-        recording.dispatch(&self.test_edges, self.groups, &arguments);
+        recording.dispatch(&self.test_edges, [self.pace.groups, 1, 1], &arguments);
     }
 
     fn flip(&self, recording: &mut Recording, round: Round<'_>, list: Option<&EdgeList>, parity: usize, least: u32) {
@@ -213,7 +206,7 @@ impl Stage {
             least,
             parity: parity as u32,
         };
-        recording.dispatch(&self.flip_edges, self.groups, &arguments);
+        recording.dispatch(&self.flip_edges, [self.pace.groups, 1, 1], &arguments);
     }
 
     fn hand_on(&self, recording: &mut Recording, round: Round<'_>, parity: usize) {
@@ -234,10 +227,10 @@ impl Stage {
             scope: scope as u32,
             parity: parity as u32,
         };
-        recording.dispatch(&self.advance_edges, self.groups, &arguments);
+        recording.dispatch(&self.advance_edges, [self.pace.groups, 1, 1], &arguments);
     }
 
-    fn tail(&self, recording: &mut Recording, round: Round<'_>, least: u32) {
+    fn tail(&self, recording: &mut Recording, round: Round<'_>, least: u32, most: u32) {
         let Round { mesh, buffers, also, tally, scope } = round;
         let arguments = FlipTailArgs {
             triangles: mesh.corners(),
@@ -254,8 +247,8 @@ impl Stage {
             also_limit: also.map_or(0, EdgeList::limit),
             scope: scope as u32,
             least,
-            most: TAIL_ROUNDS,
-            most_tests: TAIL_TESTS,
+            most,
+            most_flips: if scope == Scope::Hull { NONE } else { self.pace.flips },
         };
         recording.dispatch(&self.flip_tail, [1, 1, 1], &arguments);
     }
