@@ -62,7 +62,7 @@ pub struct Input<'a> {
     pub freed: View<'a, [u32; 2]>,
 }
 
-/// What the stage holds beside the mesh: at most 48 bytes a point and 12 a slot, and 4 words a slot for the list of edges.
+/// What the stage holds beside the mesh: 32 bytes a point and 20 a slot.
 #[derive(Debug)]
 pub struct Buffers {
     waiting: Buffer<[u32; 2]>,
@@ -74,20 +74,15 @@ pub struct Buffers {
     words: Buffer<u32>,
     ends: Buffer<u32>,
     edges: EdgeList,
-    hull_edges: EdgeList,
     hull: Tally,
     flips: Tally,
 }
 
-/// Room for the edges of a round: three or four of each winner, which brings along two slots, and four of each flip, which
-/// takes two triangles.
+/// Room for the edges of a round of flips. There are `n` points, `v` of them vertices before the round; it inserts `w`, and
+/// as many still wait. The last round of flips has handed on three edges a vertex at most, and each winner brings along three
+/// or four: less than `3 n` together. The rest is for ghost flips.
 fn edges_of(slots: usize) -> usize {
-    3 * slots
-}
-
-/// Six of each winner outside, of which there are at most as many as hull edges before.
-fn hull_edges_of(slots: usize) -> usize {
-    3 * slots.div_ceil(2)
+    2 * slots
 }
 
 impl Buffers {
@@ -219,7 +214,6 @@ impl Stage {
             .buffer::<u32>("insert words", WORDS)
             .buffer::<u32>("ends of a chain", 2 * END_GROUPS as usize)
             .and(EdgeList::estimate(edges_of(slots)))
-            .and(EdgeList::estimate(hull_edges_of(slots)))
     }
 
     /// Memory for so many points, and meshes of up to so many slots.
@@ -239,7 +233,6 @@ impl Stage {
             words: Buffer::new(device, "insert words", WORDS)?,
             ends: Buffer::new(device, "ends of a chain", 2 * END_GROUPS as usize)?,
             edges: EdgeList::new(device, edges_of(slots))?,
-            hull_edges: EdgeList::new(device, hull_edges_of(slots))?,
             hull: Tally::new(device)?,
             flips: Tally::new(device)?,
         })
@@ -268,7 +261,7 @@ impl Stage {
         self.record_begin(recording, mesh, buffers, input)?;
         flips.0.record_start(recording, flips.1);
         buffers.edges.record_clear(recording);
-        buffers.hull_edges.record_clear(recording);
+        flips.1.list().record_clear(recording);
         buffers.hull.record_clear(recording);
         buffers.flips.record_clear(recording);
         let waiting = buffers.word(Word::Waiting, 1)?;
@@ -353,7 +346,7 @@ impl Stage {
     ) -> Result<(), Error> {
         let (triangles, links) = (mesh.corners(), mesh.twins());
         let (waiting, places, claims) = (buffers.waiting.view(), buffers.places.view(), buffers.claims.view());
-        let (words, hull) = (buffers.words.view(), &buffers.hull_edges);
+        let (words, hull) = (buffers.words.view(), flips.1.list());
         let groups = buffers.word(Word::Groups, 3)?;
         let (limit, freed) = (mesh.vertices() as u32, input.freed);
         let arguments = InsertLocateArgs {
