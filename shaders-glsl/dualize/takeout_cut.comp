@@ -263,7 +263,7 @@ bool cut_wide(uint v, uint start) {
         wide_across[k] = links.at[next_edge(h)];
         wide_places[k] = next_edge(h);
         wide_ring[k] = (k + 1u == degree ? 0u : k + 1u) | (k == 0u ? degree - 1u : k - 1u) << 16;
-        wide_flags[k] = 0u;
+        wide_flags[k] = EAR;
         if (end == GHOST) {
             wide_ghost = k;
         }
@@ -278,15 +278,20 @@ bool cut_wide(uint v, uint start) {
     uint tests = degree;
     bool ended = false;
     for (uint cuts = 0u; cuts < degree; cuts++) {
-        for (uint i = rank; i < tests; i += WORKGROUP) {
-            uint k = tests > 2u ? i : i == 0u ? c : wide_next(c);
+        // Two signs for each: a l b must be 1, and a b v not be -1.
+        for (uint i = rank; i < 2u * tests; i += WORKGROUP) {
+            uint k = tests > 2u ? i >> 1 : i < 2u ? c : wide_next(c);
             uint a = wide_previous(k);
             uint b = wide_next(k);
-            bool is_ear = false;
-            if (a != ghost && b != ghost && k != ghost) {
-                is_decided_ear(at, wide_where[a], wide_where[k], wide_where[b], is_ear);
+            bool fails = a == ghost || b == ghost || k == ghost;
+            if (!fails) {
+                bool second = (i & 1u) != 0u;
+                int sign = orient2d(wide_where[a], wide_where[second ? b : k], second ? at : wide_where[b]);
+                fails = second ? sign == -1 : sign != 1;
             }
-            wide_flags[k] = wide_flags[k] & INSIDE | uint(is_ear);
+            if (fails) {
+                atomicAnd(wide_flags[k], ~EAR);
+            }
         }
         barrier();
         for (uint step = 0u; step <= left && !ended; step++) {
@@ -310,7 +315,9 @@ bool cut_wide(uint v, uint start) {
             triangles.at[prev_edge(h)] = wide_ends[a];
             place_wide(c, g);
             wide_across[c] = next_edge(g);
-            wide_flags[c] |= INSIDE;
+            // To be tested again.
+            wide_flags[c] |= INSIDE | EAR;
+            wide_flags[wide_next(c)] |= EAR;
             link(links, next_edge(h), next_edge(g));
             wide_ends[c] = wide_ends[a];
             wide_where[c] = wide_where[a];
@@ -465,6 +472,9 @@ void cut_large(uint v, uint start) {
     note_broken(words, v);
 }
 
+// So few stars that a workgroup for each is as fast.
+layout(constant_id = 2) const uint FEW = 1024u;
+
 void main() {
     uint count = words.at[(again != 0u ? OUT_DEFERRED : OUT_WINNERS) + round];
     if (ARITHMETIC != FAST) {
@@ -479,6 +489,10 @@ void main() {
     }
     for (uint i = first_item(); i < count; i += item_stride()) {
         uint start = winners.at[i];
+        if (count <= FEW) {
+            deferred.at[append(words, OUT_DEFERRED + round)] = start;
+            continue;
+        }
         uint v = origin(triangles, start);
         uint degree = 0u;
         uint ghost = NONE;

@@ -371,7 +371,8 @@ fn cut_and_link(only_cut: bool) {
 }
 
 fn cut_and_link_round(device: &mut Device, name: &str, only_cut: bool, now: &Stuck, elected: &takeout::Elected) {
-    for arithmetic in device.arithmetics() {
+    // By the filter first, or by workgroups alone; and without f64.
+    for (arithmetic, few) in [(Arithmetic::Filtered, 0), (Arithmetic::Filtered, 1024), (Arithmetic::Integers, 0)] {
         let held = device.hold(&now.mesh, &now.positions);
         let (sites, slots) = (now.state.len(), now.mesh.slots());
         let states = device.gpu.buffer(&now.state);
@@ -395,7 +396,7 @@ fn cut_and_link_round(device: &mut Device, name: &str, only_cut: bool, now: &Stu
             round: 1,
             again: 0,
         };
-        device.run_both::<TakeoutCut>(arithmetic, &cut, &TakeoutCutArgs { again: 1, ..cut });
+        device.run_both::<TakeoutCut>(arithmetic, few, &cut, &TakeoutCutArgs { again: 1, ..cut });
         let (mut mesh, mut state) = (now.mesh.clone(), now.state.clone());
         let expected = takeout::takeout_cut(&mut mesh, &now.positions, &mut state, &elected.winners).unwrap();
         let found = device.gpu.fetch(freed.view());

@@ -1260,6 +1260,7 @@ impl Shader for TakeoutCut {
         constants: &[
             Constant { name: "WORKGROUP", id: 0, default: 128 },
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
+            Constant { name: "FEW", id: 2, default: 1024 },
         ],
         capabilities: &[
             "Float64",
@@ -1270,7 +1271,7 @@ impl Shader for TakeoutCut {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "40f7740aa9848e4190e47008418f5d9d51e9c09d1d547eb95f2929a256ef20c1",
+        source_hash: "e95ac1fab680bcdbfda4ab5338d1037b77b9b53a313d111635eba2eb64b7b1a5",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

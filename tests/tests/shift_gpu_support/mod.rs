@@ -115,11 +115,17 @@ impl Device {
     }
 
     /// A kernel that leaves what its filter does not know to another.
-    pub(crate) fn run_both<S: Shader>(&mut self, arithmetic: Arithmetic, first: &S::Args<'_>, again: &S::Args<'_>) {
+    pub(crate) fn run_both<S: Shader>(
+        &mut self,
+        arithmetic: Arithmetic,
+        few: u32,
+        first: &S::Args<'_>,
+        again: &S::Args<'_>,
+    ) {
         if arithmetic == Arithmetic::Integers {
             return self.run_deciding::<S>(arithmetic, first);
         }
-        let filter = Kernel::<S>::new(&self.gpu.device, &[("ARITHMETIC", 0)]).unwrap();
+        let filter = Kernel::<S>::new(&self.gpu.device, &[("ARITHMETIC", 0), ("FEW", few)]).unwrap();
         let rest = arithmetic.kernel::<S>(&self.gpu.device, &[("WORKGROUP", 32)]).unwrap();
         let mut recording = self.gpu.recording();
         recording.dispatch(&filter, [3, 1, 1], first);

@@ -34,7 +34,7 @@ pub(super) const OUT_ROUNDS: u32 = 6;
 /// Workgroups of a wide kernel, whose invocations stride over their items.
 const WIDE: u32 = 2112;
 /// Stars that are cut by workgroups at a time.
-const STARS: u32 = 792;
+const STARS: u32 = 1056;
 const WIDE_ON_CPU: u32 = 16;
 /// Invocations that share a star.
 const WORKGROUP_OF_STAR: u32 = 32;

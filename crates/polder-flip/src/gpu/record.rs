@@ -15,6 +15,8 @@ const WIDE: usize = 6;
 const FEW: u32 = 256;
 /// Wide rounds of closing a hull: an even number.
 const HULL_WIDE: usize = 2;
+/// Of closing a whole hull from a list: wide rounds after the first.
+const LONG_HULL_WIDE: usize = 5;
 
 /// Which edges may be flipped.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -128,6 +130,11 @@ impl Stage {
                 self.test_list(recording, round, list);
                 self.flip(recording, round, Some(list), 0, 0);
                 self.hand_on(recording, round, 0);
+                // Between insertions a hull is closed often, and little is to be done.
+                let wide = if also.is_none() { LONG_HULL_WIDE } else { 0 };
+                for turn in 1..=wide {
+                    self.advance(recording, round, turn % 2, FEW);
+                }
             }
             None => {
                 self.test_mesh(recording, round);
