@@ -7,7 +7,7 @@ mod vulkan_support;
 use glam::DVec2;
 use polder_dualize::gpu::insert::{Counts, Input, Stage};
 use polder_dualize::reference::{self, ToInsert};
-use polder_dualize::{Inserted, Shifted};
+use polder_dualize::{DualizeError, Inserted, Shifted};
 use polder_flip::gpu::{self as flips, Arithmetic, Mesh};
 use polder_tests::point_families;
 use polder_voronoi::{Options, Resolution};
@@ -108,4 +108,63 @@ fn sizes_around_nothing_and_a_workgroup() {
         let (case, expected) = Case::new(points.points(), &Resolution::LongerSide(2).into());
         assert_inserted(&mut gpu, &stages[count % 2], "uniform", &case, &expected);
     }
+}
+
+#[test]
+fn a_recording_serves_again_and_buffers_for_less_are_refused() {
+    let (mut gpu, [stages, _]) = stages();
+    let points = polder_io::generate::clusters(900, 3, 1e-4, 3);
+    let (case, expected) = Case::new(points.points(), &Options::default());
+    let vertices = case.positions.len();
+    let mesh = Mesh::new(&gpu.device, vertices).unwrap();
+    let flip_buffers = stages.flips.buffers(mesh.capacity()).unwrap();
+    let buffers = stages.insert.buffers(vertices, mesh.capacity()).unwrap();
+    let (points, starts) = (gpu.buffer(&case.new.points), gpu.buffer(&case.new.starts));
+    let (sites, freed) = (gpu.buffer(&[case.sites]), gpu.buffer(&case.shifted.freed));
+    let (points, starts, sites, freed) = (points.view(), starts.view(), sites.view(), freed.view());
+    let input = Input { points, starts, count: None, sites, freed };
+    let flips = (&stages.flips, &flip_buffers);
+    let mut recording = gpu.recording();
+    let read = stages.insert.record(&mut recording, &mesh, flips, &buffers, input).unwrap();
+    for _ in 0..3 {
+        mesh.upload(&mut gpu.engine, &case.shifted.mesh, &case.positions).unwrap();
+        assert_eq!(read.result(&gpu.run(&recording)).unwrap().rounds, expected.rounds);
+        assert!(mesh.download(&mut gpu.engine).unwrap() == expected.mesh);
+    }
+    let (one_less, few_slots) = (vertices - 1, mesh.capacity() - 1);
+    for (points, slots) in [(one_less, mesh.capacity()), (vertices, few_slots)] {
+        let small = stages.insert.buffers(points, slots).unwrap();
+        let mut recording = gpu.recording();
+        assert!(stages.insert.record(&mut recording, &mesh, flips, &small, input).is_err());
+        assert!(recording.is_empty());
+    }
+}
+
+/// Vertices where other vertices should be: walks are lost, or go on until the certificate would fail.
+#[test]
+fn a_mesh_that_overlaps_does_no_harm() {
+    let (mut gpu, [stages, _]) = stages();
+    let points = polder_io::generate::uniform(300, 4);
+    let (mut case, _) = Case::new(points.points(), &Options::default());
+    let count = case.positions.len();
+    for i in 0..count / 2 {
+        case.positions.swap(i, (7 * i + 3) % count);
+    }
+    let mesh = Mesh::new(&gpu.device, count).unwrap();
+    mesh.upload(&mut gpu.engine, &case.shifted.mesh, &case.positions).unwrap();
+    let flip_buffers = stages.flips.buffers(mesh.capacity()).unwrap();
+    let buffers = stages.insert.buffers(count, mesh.capacity()).unwrap();
+    let (points, starts) = (gpu.buffer(&case.new.points), gpu.buffer(&case.new.starts));
+    let (sites, freed) = (gpu.buffer(&[case.sites]), gpu.buffer(&case.shifted.freed));
+    let input =
+        Input { points: points.view(), starts: starts.view(), count: None, sites: sites.view(), freed: freed.view() };
+    let mut recording = gpu.recording();
+    let read = stages.insert.record(&mut recording, &mesh, (&stages.flips, &flip_buffers), &buffers, input).unwrap();
+    let report = gpu.run(&recording);
+    let known =
+        matches!(read.result(&report), Ok(_) | Err(DualizeError::WalkLost { .. } | DualizeError::BoundExceeded { .. }));
+    assert!(known);
+    let positions = &case.positions;
+    let left = mesh.download(&mut gpu.engine).unwrap();
+    assert!(read.result(&report).is_err() || reference::certify(&left, positions, "test").is_err());
 }

@@ -1,14 +1,14 @@
 //! Who goes first where several points want the same container.
 //!
 //! One 64-bit number a point, the least wins: first a bit that is clear for a point on an edge, then 31 bits that say
-//! how well the point suits, the *score*, then 32 bits of [`priority`](polder_flip::priority), so
-//! that two points never tie.
+//! how well the point suits, the *score*, then 32 bits of [`priority`](polder_flip::priority), so that two points never
+//! tie.
 //!
 //! - In a triangle all points suit alike, so that chance decides. Whatever the points look like, each part of the split
 //!   triangle is then expected to get a fraction of them. Every rule that looks at the triangle has its family of
 //!   points that it serves badly, by taking them from the border of the crowd inwards: nearest to the center needs 538
-//!   rounds for 200,000 points on four circles, and 57 for points that crowd toward one of them, where chance needs 20
-//!   and 23. What chance costs is two rounds more for a cluster, and 2.6 flips a point in place of 1.8.
+//!   rounds for 200,000 points on four circles, and 57 for points that crowd toward (1/2, 1/2), where chance needs 20 and
+//!   23. What chance costs is two rounds more for a cluster.
 //! - On an edge the point nearest to the middle goes first: points on an edge are often evenly spread.
 //! - Outside the hull it is the one highest above the hull edge: most of the others are inside afterwards, where the
 //!   nearest would leave them outside, in sectors hardly narrower; and of points along an arc the highest is in the
