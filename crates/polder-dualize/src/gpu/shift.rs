@@ -6,9 +6,14 @@
 //! 2. *Unpin.* Rounds over lists of the pinned sites. A site is tried in the round in which no neighbor of lower priority
 //!    waits; the rounds in which sites were tried are kept, so that finding and trying are one kernel.
 //! 3. *Close.* `polder-flip` closes the hull. Ghost flips leave finite triangles as they are, and so the half-edges of
-//!    pinned sites stay theirs.
-//! 4. *Take out*, in rounds of three steps: find the sites that go; cut their stars, each by one invocation and within its
-//!    own triangles; link the stars' outer edges to what is across. See [`reference`](mod@crate::reference).
+//!    pinned sites stay theirs. The first step has listed the ghost's edges.
+//! 4. *Take out*, in rounds of three steps: find the sites that go; cut their stars, each within its own triangles; link
+//!    the stars' outer edges to what is across. See [`reference`](mod@crate::reference). Many small stars are cut by one
+//!    invocation each, which reads all of a star, decides by the f64 filter alone, and then writes; few or large ones, and
+//!    what the filter leaves open, by a workgroup each, in shared memory.
+//!
+//! Walks around vertices are chains of reads that wait for each other. So the neighbors of pinned sites are kept when they
+//! are pinned, and a site that waits remembers one that it waits for, and does not look around before that one is done.
 //!
 //! Step 1 reads all triangles once, everything else lists. Sites on lists are in order of arrival, and nothing depends on
 //! that order. Positions are those of the mesh: true ones but for pinned sites, and at the end true ones.
