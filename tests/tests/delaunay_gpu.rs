@@ -203,3 +203,37 @@ fn loss_and_lack_of_memory_are_errors_and_the_next_call_works() {
     }
     close(gpu);
 }
+
+/// Takes a minute on a large GPU with many cores beside it; `POLDER_POINTS` says how many points, `POLDER_FAMILY` which ones.
+#[test]
+#[ignore = "long"]
+fn every_large_family_has_the_digest_of_the_cpu() {
+    let points = std::env::var("POLDER_POINTS").map_or(1_000_000, |text| text.parse().unwrap());
+    let wanted = std::env::var("POLDER_FAMILY").ok();
+    let mut gpu = open(Arithmetic::Filtered);
+    let mut failed = Vec::new();
+    for (name, pslg) in point_families(points, 1) {
+        if wanted.as_ref().is_some_and(|wanted| wanted != name) {
+            continue;
+        }
+        let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
+        gpu.release();
+        let same = match gpu.triangulate(&pslg, &Options::default()) {
+            Ok(output) => {
+                assert_on_device(&output.report, name);
+                let device = output.report.device.as_ref().unwrap();
+                let seconds: f64 = output.report.stages.iter().map(|stage| stage.seconds).sum();
+                let (digest, waits) = (output.triangulation.digest(), device.host_waits);
+                println!("{name}: {digest}, {waits} waits, {:.1} ms", 1e3 * seconds);
+                digest == expected.digest() && output.triangulation == expected
+            }
+            Err(error) => {
+                println!("{name}: {error}");
+                false
+            }
+        };
+        failed.extend((!same).then_some(name));
+    }
+    assert_eq!(failed, Vec::<&str>::new());
+    close(gpu);
+}

@@ -3,6 +3,7 @@
 use crate::Error;
 use crate::device::{Device, DeviceInner};
 use crate::memory::Allocated;
+use crate::pool::Pool;
 use crate::shader::Touch;
 use ash::vk;
 use bytemuck::Pod;
@@ -28,6 +29,7 @@ pub(crate) struct BufferInner {
 /// A recording that uses a buffer keeps it alive.
 pub struct Buffer<T> {
     inner: Arc<BufferInner>,
+    start: u64,
     len: usize,
     of: PhantomData<fn() -> T>,
 }
@@ -67,8 +69,21 @@ fn bytes_of<T>(len: usize) -> u64 {
 impl<T: Pod> Buffer<T> {
     /// Room for `len` elements. The name stands in errors.
     pub fn new(device: &Device, name: &'static str, len: usize) -> Result<Self, Error> {
-        let inner = allocate(&device.inner, name, bytes_of::<T>(len))?;
-        Ok(Buffer { inner, len, of: PhantomData })
+        let bytes = bytes_of::<T>(len);
+        let (inner, start) = match device.pool.as_ref().and_then(|pool| pool.take(bytes)) {
+            Some(found) => found,
+            None => {
+                let inner = allocate(&device.inner, name, bytes)?;
+                let start = inner.memory.guard;
+                (inner, start)
+            }
+        };
+        Ok(Buffer { inner, start, len, of: PhantomData })
+    }
+
+    /// Lets buffers that are made later have its memory: nothing recorded from now on may need what it holds.
+    pub fn give(&self, pool: &Pool) {
+        pool.give(&self.inner, self.start, bytes_of::<T>(self.len));
     }
 
     /// Room for at least `len` elements; the length becomes `len`. Grows by half of what there was at least, so that
@@ -76,7 +91,7 @@ impl<T: Pod> Buffer<T> {
     ///
     /// The old memory is given back first, unless a recording holds it.
     pub fn resize(&mut self, len: usize) -> Result<bool, Error> {
-        if bytes_of::<T>(len) <= self.inner.memory.bytes {
+        if self.start == self.inner.memory.guard && bytes_of::<T>(len) <= self.inner.memory.bytes {
             self.len = len;
             return Ok(false);
         }
@@ -93,7 +108,7 @@ impl<T: Pod> Buffer<T> {
             }
             other => other?,
         };
-        self.len = len;
+        (self.start, self.len) = (self.inner.memory.guard, len);
         Ok(true)
     }
 
@@ -109,7 +124,7 @@ impl<T: Pod> Buffer<T> {
 
     /// All elements.
     pub fn view(&self) -> View<'_, T> {
-        View { buffer: &self.inner, start: self.inner.memory.guard, len: self.len, of: PhantomData }
+        View { buffer: &self.inner, start: self.start, len: self.len, of: PhantomData }
     }
 
     /// Some elements. The first must lie at a multiple of [`VIEW_ALIGN`] bytes.

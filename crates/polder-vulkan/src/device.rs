@@ -8,6 +8,7 @@ use crate::info::{DeviceInfo, Feature};
 use crate::instance::{Instance, one_at_a_time};
 use crate::kernel::Pipelines;
 use crate::memory::{Memory, MemoryUse};
+use crate::pool::Pool;
 use crate::self_test::SelfTest;
 use crate::{Error, Selection};
 use ash::vk;
@@ -73,6 +74,7 @@ pub(crate) struct DeviceInner {
 #[derive(Clone)]
 pub struct Device {
     pub(crate) inner: Arc<DeviceInner>,
+    pub(crate) pool: Option<Pool>,
 }
 
 impl std::fmt::Debug for Device {
@@ -212,7 +214,13 @@ impl Device {
             owned,
             instance,
         };
-        Ok(Device { inner: Arc::new(inner) })
+        Ok(Device { inner: Arc::new(inner), pool: None })
+    }
+
+    /// The same device, on which buffers take memory from a pool before any is allocated.
+    #[must_use]
+    pub fn reusing(&self, pool: &Pool) -> Self {
+        Device { inner: Arc::clone(&self.inner), pool: Some(pool.clone()) }
     }
 
     /// What the device is and can do.

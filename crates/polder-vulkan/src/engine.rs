@@ -107,7 +107,7 @@ impl Engine {
 
     /// Its device.
     pub fn device(&self) -> Device {
-        Device { inner: self.submitter.device.clone() }
+        Device { inner: self.submitter.device.clone(), pool: None }
     }
 
     /// Runs a recording to its end. It can be run again.
@@ -124,7 +124,7 @@ impl Engine {
         self.make_room(recording.words + 1)?;
         if recording.runs_ahead() {
             let known = self.ahead.take().filter(|ahead| ahead.fits(recording));
-            let device = Device { inner: self.submitter.device.clone() };
+            let device = Device { inner: self.submitter.device.clone(), pool: None };
             self.ahead = Some(known.map_or_else(|| Ahead::new(&device, recording), Ok)?);
         }
         let timed = options.timestamps || recording.has_sections();

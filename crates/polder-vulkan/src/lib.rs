@@ -51,6 +51,7 @@ mod instance;
 mod kernel;
 pub mod kernels;
 mod memory;
+mod pool;
 pub mod primitives;
 mod queries;
 mod recording;
@@ -75,6 +76,7 @@ pub use info::{DeviceInfo, DeviceKind, Feature, Limits, Requirements, requiremen
 pub use instance::Instance;
 pub use kernel::Kernel;
 pub use memory::{Estimate, MemoryUse};
+pub use pool::Pool;
 pub use recording::{ReadBack, Recording, groups_for};
 pub use select::Selection;
 pub use self_test::SelfTest;

@@ -16,7 +16,7 @@ use crate::DualizeError;
 use crate::kernels::*;
 use crate::reference::kernels::dualize::words_in_row;
 use polder_vulkan::primitives::Scan;
-use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, ReadBack, Recording, RunReport, View};
+use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, Pool, ReadBack, Recording, RunReport, View};
 
 /// Columns and rows of corners that a workgroup counts.
 const COUNT_TILE: [u32; 2] = [256, 8];
@@ -106,6 +106,12 @@ pub struct Buffers {
 }
 
 impl Buffers {
+    /// Gives all but the counts; see [`Buffer::give`].
+    pub fn give(&self, pool: &Pool) {
+        self.vertices.give(pool);
+        self.first.give(pool);
+    }
+
     fn word(&self, word: Word) -> Result<View<'_, u32>, Error> {
         self.counts.slice(word as usize..word as usize + 1)
     }

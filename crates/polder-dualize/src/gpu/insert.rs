@@ -20,7 +20,7 @@ use crate::DualizeError;
 use crate::kernels::*;
 use polder_flip::FlipReport;
 use polder_flip::gpu::{self as flips, Arithmetic, EdgeList, Mesh, Tally, TallyRead};
-use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, ReadBack, Recording, RunReport, View, groups_for};
+use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, Pool, ReadBack, Recording, RunReport, View, groups_for};
 
 const NONE: u32 = u32::MAX;
 const WORKGROUP: u32 = 256;
@@ -86,6 +86,16 @@ fn edges_of(slots: usize) -> usize {
 }
 
 impl Buffers {
+    /// Gives all but the vertices of the points; see [`Buffer::give`].
+    pub fn give(&self, pool: &Pool) {
+        self.waiting.give(pool);
+        self.places.give(pool);
+        self.claims.give(pool);
+        self.rounds.give(pool);
+        self.edges.give(pool);
+        self.hull_edges.give(pool);
+    }
+
     /// For each point the vertex that it is or equals.
     pub fn vertex_of(&self) -> View<'_, u32> {
         self.vertex_of.view()

@@ -3,7 +3,7 @@
 use super::shift::Input;
 use crate::DualizeError;
 use polder_flip::gpu::Mesh;
-use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunReport, View};
+use polder_vulkan::{Buffer, Device, Error, Estimate, Pool, ReadBack, Recording, RunReport, View};
 
 const WORDS: usize = 288;
 /// Words of the ring of a site.
@@ -74,6 +74,22 @@ impl Buffers {
             edges: Buffer::new(device, "outer edges", slots)?,
             words: words("shift words", WORDS)?,
         })
+    }
+
+    /// Gives all but the slots that sites left free; see [`Buffer::give`].
+    pub fn give(&self, pool: &Pool) {
+        self.state.give(pool);
+        self.all.give(pool);
+        self.waiting[0].give(pool);
+        self.waiting[1].give(pool);
+        self.winners.give(pool);
+        self.edge_of.give(pool);
+        self.edges.give(pool);
+    }
+
+    /// Gives the slots that sites left free; see [`Buffer::give`].
+    pub fn give_freed(&self, pool: &Pool) {
+        self.freed.give(pool);
     }
 
     /// Sites that it was made for.

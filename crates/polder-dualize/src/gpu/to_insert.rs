@@ -2,7 +2,7 @@
 
 use super::shift;
 use crate::kernels::{PointsToInsert, PointsToInsertArgs};
-use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, Recording, View, groups_for};
+use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, Pool, Recording, View, groups_for};
 
 const WORKGROUP: u32 = 256;
 
@@ -47,6 +47,12 @@ impl Buffers {
             starts: Buffer::new(device, "starts", points)?,
             count: Buffer::new(device, "points to insert, count", 4)?,
         })
+    }
+
+    /// Gives the lists; see [`Buffer::give`].
+    pub fn give(&self, pool: &Pool) {
+        self.points.give(pool);
+        self.starts.give(pool);
     }
 
     /// The points, by the number of the new order; in any order.

@@ -2,7 +2,7 @@
 
 use super::Mesh;
 use crate::FlipReport;
-use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunReport, View};
+use polder_vulkan::{Buffer, Device, Error, Estimate, Pool, ReadBack, Recording, RunReport, View};
 
 /// Words of a list's count, and of a report.
 const WORDS: usize = 8;
@@ -31,6 +31,11 @@ impl EdgeList {
     /// What [`EdgeList::new`] will hold.
     pub fn estimate(limit: usize) -> Estimate {
         Estimate::new().buffer::<u32>("edges", limit).buffer::<u32>("edge count", WORDS)
+    }
+
+    /// Gives the list; see [`Buffer::give`].
+    pub fn give(&self, pool: &Pool) {
+        self.edges.give(pool);
     }
 
     /// The half-edges.
@@ -133,6 +138,14 @@ pub(super) fn estimate(slots: usize) -> Estimate {
 }
 
 impl Buffers {
+    /// Gives all of it; see [`Buffer::give`].
+    pub fn give(&self, pool: &Pool) {
+        self.state.give(pool);
+        self.listed.give(pool);
+        self.illegal.give(pool);
+        self.list.give(pool);
+    }
+
     pub(super) fn new(device: &Device, slots: usize) -> Result<Self, Error> {
         estimate(slots).check(device)?;
         let words = |name, len| Buffer::<u32>::new(device, name, len);

@@ -4,7 +4,7 @@ use super::Tuning;
 use crate::reference::kernels::{TILE_HEIGHT, TILE_WIDTH};
 use crate::{Counts, MAX_SIDE};
 use polder_vulkan::primitives::{Scan, Sort};
-use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunReport, View};
+use polder_vulkan::{Buffer, Device, Error, Estimate, Pool, ReadBack, Recording, RunReport, View};
 
 /// The most points: kernels reach 4 GiB from an address.
 pub(super) const MOST_POINTS: usize = 1 << 28;
@@ -179,6 +179,27 @@ impl Buffers {
             scan: Scan::new(device, lengths.scanned())?,
             sort: Sort::new(device, points)?,
         })
+    }
+
+    /// Gives what only the stage itself needs; see [`Buffer::give`].
+    pub fn give_scratch(&self, pool: &Pool) {
+        self.site_bits.give(pool);
+        self.site_ranks.give(pool);
+        self.a.give(pool);
+        self.b.give(pool);
+        self.missing.give(pool);
+        self.lost.give(pool);
+        self.lost_ranks.give(pool);
+        self.ends.give(pool);
+        self.live.give(pool);
+        self.starts.give(pool);
+        self.sort.give(pool);
+    }
+
+    /// Gives colors and pixels; see [`Buffer::give`].
+    pub fn give_diagram(&self, pool: &Pool) {
+        self.colors.give(pool);
+        self.pixels.give(pool);
     }
 
     /// Points that it was made for.

@@ -13,6 +13,7 @@ use crate::kernels::{
     SortMoveU64Args,
 };
 use crate::memory::Estimate;
+use crate::pool::Pool;
 use crate::recording::{Recording, groups_for};
 use crate::shader::Shader;
 use bytemuck::Pod;
@@ -161,6 +162,12 @@ impl<K: SortKey> Sort<K> {
             shape,
             capacity,
         })
+    }
+
+    /// Gives the memory that is as large as keys and values; see [`Buffer::give`].
+    pub fn give(&self, pool: &Pool) {
+        self.keys.give(pool);
+        self.values.give(pool);
     }
 
     /// Sorts keys, and values along, by the lowest `bits` of the keys; equal ones stay in the order that they have. Time

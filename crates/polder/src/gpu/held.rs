@@ -28,38 +28,45 @@ pub(super) struct Held {
 }
 
 impl Held {
-    /// Bytes, before any is allocated.
-    pub(super) fn estimate(pipeline: &Pipeline, points: usize, size: [u32; 2]) -> Estimate {
+    /// What stages hold at the same time: none of it may be more than there is.
+    fn estimates(pipeline: &Pipeline, points: usize, size: [u32; 2]) -> [Estimate; 4] {
         let slots = Mesh::slots_for(points);
-        pipeline
-            .voronoi
-            .estimate(points, size)
-            .and(dualize::Stage::estimate(size))
-            .and(shift::Stage::estimate(points))
-            .and(to_insert::Buffers::estimate(points))
-            .and(insert::Stage::estimate(points, slots))
-            .and(pipeline.flip.estimate(slots))
-            .and(Mesh::estimate(points))
-            .and(pipeline.canonical.estimate(points, slots))
+        let voronoi = pipeline.voronoi.estimate(points, size).and(dualize::Stage::estimate(size));
+        let flip = || Mesh::estimate(points).and(pipeline.flip.estimate(slots));
+        [
+            voronoi.and(Mesh::estimate(points)),
+            flip().and(shift::Stage::estimate(points)).and(to_insert::Buffers::estimate(points)),
+            flip().and(insert::Stage::estimate(points, slots)).and(to_insert::Buffers::estimate(points)),
+            Mesh::estimate(points).and(pipeline.canonical.estimate(points, slots)),
+        ]
     }
 
+    /// All memory is there before any work is recorded. A stage takes what the ones before have done with: in the order in
+    /// which they are recorded, which is the order in which they are made here.
     pub(super) fn new(device: &Device, pipeline: &Pipeline, points: usize, size: [u32; 2]) -> Result<Self, Error> {
-        Self::estimate(pipeline, points, size).check(device)?;
+        let estimates = Self::estimates(pipeline, points, size);
+        estimates.iter().try_for_each(|estimate| estimate.check(device))?;
+        let pool = &pipeline.pool;
+        pool.clear();
         let mesh = Mesh::new(device, points)?;
-        Ok(Self {
-            points,
-            size,
-            voronoi: pipeline.voronoi.buffers(points, size)?,
-            dualize: pipeline.dualize.buffers(size)?,
-            shift: pipeline.shift.buffers(points)?,
-            to_insert: to_insert::Buffers::new(device, points)?,
-            insert: pipeline.insert.buffers(points, mesh.capacity())?,
-            flip: pipeline.flip.buffers(mesh.capacity())?,
-            hull: Tally::new(device)?,
-            flips: Tally::new(device)?,
-            canonical: pipeline.canonical.buffers(points, mesh.capacity())?,
-            mesh,
-        })
+        let voronoi = pipeline.voronoi.buffers(points, size)?;
+        voronoi.give_scratch(pool);
+        let dualize = pipeline.dualize.buffers(size)?;
+        let flip = pipeline.flip.buffers(mesh.capacity())?;
+        let shift = pipeline.shift.buffers(points)?;
+        let to_insert = to_insert::Buffers::new(&pipeline.device, points)?;
+        voronoi.give_diagram(pool);
+        dualize.give(pool);
+        shift.give(pool);
+        let insert = pipeline.insert.buffers(points, mesh.capacity())?;
+        insert.give(pool);
+        shift.give_freed(pool);
+        to_insert.give(pool);
+        flip.give(pool);
+        let canonical = pipeline.canonical.buffers(points, mesh.capacity())?;
+        pool.clear();
+        let (hull, flips) = (Tally::new(device)?, Tally::new(device)?);
+        Ok(Self { points, size, voronoi, dualize, shift, to_insert, insert, flip, hull, flips, mesh, canonical })
     }
 
     pub(super) fn fits(&self, points: usize, size: [u32; 2]) -> bool {

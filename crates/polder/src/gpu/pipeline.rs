@@ -8,10 +8,13 @@ use polder_flip::gpu::{self as flip, Arithmetic};
 use polder_mesh::DVec2;
 use polder_voronoi::GridMapping;
 use polder_voronoi::gpu as voronoi;
-use polder_vulkan::{Device, Recording, View};
+use polder_vulkan::{Device, Pool, Recording, View};
 
 #[derive(Debug)]
 pub(super) struct Pipeline {
+    /// Where stages leave memory that they have done with, for those behind them; and the device, taking from there.
+    pub(super) pool: Pool,
+    pub(super) device: Device,
     pub(super) bounds: voronoi::FindBounds,
     pub(super) voronoi: voronoi::Stage,
     pub(super) dualize: dualize::Stage,
@@ -24,8 +27,13 @@ pub(super) struct Pipeline {
 
 impl Pipeline {
     pub(super) fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
+        let bounds = voronoi::FindBounds::new(device)?;
+        let pool = Pool::default();
+        let device = &device.reusing(&pool);
         Ok(Self {
-            bounds: voronoi::FindBounds::new(device)?,
+            pool,
+            device: device.clone(),
+            bounds,
             voronoi: voronoi::Stage::new(device)?,
             dualize: dualize::Stage::new(device)?,
             shift: shift::Stage::new(device, arithmetic)?,
