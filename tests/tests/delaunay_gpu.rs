@@ -126,7 +126,8 @@ fn a_second_call_of_the_same_size_allocates_nothing() {
     let waits = |report: &Report| report.device.as_ref().unwrap().host_waits;
     assert!(waits(&first) <= 10 && waits(&second) <= 10, "{} {}", waits(&first), waits(&second));
     gpu.release();
-    assert!(gpu.device().memory_use().used < used / 4);
+    // Staging memory is kept.
+    assert!(gpu.device().memory_use().used + 150 * 2000 < used);
     assert_same(&mut gpu, "third", &pslg, &Options::default());
     close(gpu);
 }

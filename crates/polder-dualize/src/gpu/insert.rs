@@ -93,7 +93,6 @@ impl Buffers {
         self.claims.give(pool);
         self.rounds.give(pool);
         self.edges.give(pool);
-        self.hull_edges.give(pool);
     }
 
     /// For each point the vertex that it is or equals.
