@@ -1,11 +1,13 @@
 //! Which barrier a command needs, from what it and the commands before it touch.
 //!
-//! A barrier orders all earlier commands of some scopes before all later ones of others. Each use of memory is
-//! remembered with the scopes that barriers have ordered after it; a command that conflicts with a use its scope is not
-//! ordered after needs a barrier, and the narrowest one is between the scopes that conflict. That keeps a chain of
-//! kernels at compute to compute; only an indirect read or a transfer widens it.
+//! A barrier orders all earlier commands of some scopes before all later ones of others. Commands are numbered. Of each use
+//! of memory is remembered which command it was, and of each pair of scopes when a barrier last stood between them: a use is
+//! ordered before a scope if that was later. A command that conflicts with a use its scope is not ordered after needs a
+//! barrier, and the narrowest one is between the scopes that conflict. That keeps a chain of kernels at compute to compute;
+//! only an indirect read or a transfer widens it.
 
 use std::collections::HashMap;
+use std::hash::{BuildHasherDefault, Hasher};
 
 /// Who touches memory. A set of scopes is the sum of their bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,7 +18,12 @@ pub(crate) enum Scope {
     Indirect = 4,
 }
 
-const ALL: u8 = 7;
+/// Scopes, and their bits.
+const SCOPES: usize = 3;
+
+fn places(scopes: u8) -> impl Iterator<Item = usize> {
+    (0..SCOPES).filter(move |place| scopes & (1 << place) != 0)
+}
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Use {
@@ -37,13 +44,35 @@ pub(crate) struct Barrier {
 #[derive(Debug, Clone, Copy)]
 struct Past {
     of: Use,
-    /// Scopes ordered after it.
-    ordered: u8,
+    /// The command.
+    number: u64,
+}
+
+/// Buffers are numbered: that spreads them well enough.
+#[derive(Debug, Default, Clone, Copy)]
+struct ById(u64);
+
+impl Hasher for ById {
+    fn finish(&self) -> u64 {
+        self.0.wrapping_mul(0x9e37_79b9_7f4a_7c15)
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.0 = self.0 << 8 | u64::from(*byte));
+    }
+
+    fn write_u64(&mut self, id: u64) {
+        self.0 = id;
+    }
 }
 
 #[derive(Debug, Default)]
 pub(crate) struct Hazards {
-    past: HashMap<u64, Vec<Past>>,
+    past: HashMap<u64, Vec<Past>, BuildHasherDefault<ById>>,
+    /// The command that comes next.
+    next: u64,
+    /// From scope to scope: the command before which a barrier last stood.
+    barriers: [[u64; SCOPES]; SCOPES],
 }
 
 impl Hazards {
@@ -53,25 +82,26 @@ impl Hazards {
 
     /// The barrier that has to stand before a command of these uses, which is then remembered.
     pub(crate) fn before(&mut self, uses: &[Use]) -> Option<Barrier> {
+        let number = self.next;
+        self.next += 1;
         let mut barrier = Barrier::default();
+        let barriers = &self.barriers;
+        let is_ordered =
+            |past: &Past, to: usize| barriers[(past.of.scope as u8).trailing_zeros() as usize][to] > past.number;
         for new in uses.iter().filter(|new| new.start < new.end) {
+            let to = (new.scope as u8).trailing_zeros() as usize;
             for past in self.past.get(&new.buffer).into_iter().flatten() {
                 let overlap = past.of.start < new.end && new.start < past.of.end;
-                if overlap && (past.of.write || new.write) && past.ordered & new.scope as u8 == 0 {
+                if overlap && (past.of.write || new.write) && !is_ordered(past, to) {
                     barrier.from |= past.of.scope as u8;
                     barrier.to |= new.scope as u8;
                 }
             }
         }
-        let needed = (barrier != Barrier::default()).then_some(barrier);
-        if needed.is_some() {
-            for uses in self.past.values_mut() {
-                for past in uses.iter_mut().filter(|past| barrier.from & past.of.scope as u8 != 0) {
-                    past.ordered |= barrier.to;
-                }
-                uses.retain(|past| past.ordered != ALL);
+        for from in places(barrier.from) {
+            for to in places(barrier.to) {
+                self.barriers[from][to] = number;
             }
-            self.past.retain(|_, uses| !uses.is_empty());
         }
         let uses = uses.iter().filter(|new| new.start < new.end);
         for new in uses.clone().filter(|new| new.write) {
@@ -81,12 +111,15 @@ impl Hazards {
         }
         for new in uses {
             let past = self.past.entry(new.buffer).or_default();
-            if !past.iter().any(|past| past.of == *new && past.ordered == 0) {
-                past.retain(|past| past.of != *new);
-                past.push(Past { of: *new, ordered: 0 });
-            }
+            let barriers = &self.barriers;
+            // What was read in the same way before is ordered by whatever orders this.
+            past.retain(|past| {
+                let row = &barriers[(past.of.scope as u8).trailing_zeros() as usize];
+                past.of != *new && row.iter().any(|barrier| *barrier <= past.number)
+            });
+            past.push(Past { of: *new, number });
         }
-        needed
+        (barrier != Barrier::default()).then_some(barrier)
     }
 }
 
