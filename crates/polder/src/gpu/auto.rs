@@ -5,8 +5,12 @@ use crate::{Error, Options, Output, cpu};
 use polder_mesh::Pslg;
 use polder_vulkan::{Device, DeviceKind, DeviceOptions};
 
-/// From so many points on [`Backend::Auto`](crate::Backend::Auto) looks for a GPU: below, opening it takes longer than the
-/// CPU needs for everything.
+/// From so many points on [`Backend::Auto`](crate::Backend::Auto) looks for a GPU: below, opening it takes about as long as
+/// the CPU needs for everything.
+///
+/// Measured on an NVIDIA H200 beside 16 cores: the CPU takes 0.19 s for a million uniform points and 2.1 s for ten, the GPU
+/// from host to host 0.02 s and 0.11 s once it is open. Opening it took 3.4 s with every kernel to be compiled, which happens
+/// once on a machine; with kernels from the cache a few tenths of a second are assumed here, not measured.
 pub const AUTO_FROM: usize = 2_000_000;
 
 fn device_options(options: &Options) -> DeviceOptions {
