@@ -29,7 +29,7 @@ pub struct FlipReport {
     pub rounds: u64,
     /// Edges flipped.
     pub flips: u64,
-    /// Edges tested.
+    /// Edges tested; on a GPU also those that the round before has shown to be illegal, and that are not tested again.
     pub tests: u64,
 }
 

@@ -10,7 +10,7 @@ const NONE: u32 = u32::MAX;
 const WORKGROUP: u32 = 256;
 
 /// Wide rounds between two tails: an even number.
-const WIDE: usize = 6;
+const WIDE: usize = 10;
 /// Fewer illegal edges than these are left to the tail, which keeps them up to four times as many.
 const FEW: u32 = 256;
 /// Wide rounds of closing a hull: an even number.
@@ -63,7 +63,7 @@ impl Stage {
         let round = Round { mesh, buffers, also: None, tally, scope: Scope::All };
         self.test_mesh(recording, round);
         let bound = u32::try_from(round_bound(mesh.capacity())).unwrap_or(u32::MAX);
-        recording.repeat_ahead("flip", buffers.pending()?, bound, 1, 3, |body| {
+        recording.repeat_ahead("flip", buffers.pending()?, bound, 1, 2, |body| {
             for turn in 0..WIDE {
                 self.advance(body, round, turn % 2, FEW);
             }
