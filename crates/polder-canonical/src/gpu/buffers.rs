@@ -5,8 +5,8 @@ use crate::reference::Check;
 use polder_vulkan::primitives::Scan;
 use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunReport, View};
 
-/// Half-edges have 31 bits.
-const MOST_SLOTS: usize = (1 << 31) / 3;
+/// Kernels reach 4 GiB from an address: that many triangles of 12 bytes.
+const MOST_SLOTS: usize = (1 << 30) / 3;
 const WORDS: usize = 36;
 
 /// Places of single words in the counts: views begin at multiples of 4 words.
