@@ -300,3 +300,28 @@ fn more_commands_than_one_submission_can_time() {
     assert_eq!((report.timings.get("fill").unwrap().count, report.submissions), (5000, 3));
     assert_eq!(gpu.fetch(buffer.view()), [4999; 4]);
 }
+
+#[test]
+fn memory_that_was_given_is_taken_and_commands_stay_in_order() {
+    let mut gpu = Gpu::open();
+    let pool = polder_vulkan::Pool::default();
+    let reusing = gpu.device.reusing(&pool);
+    let first = Buffer::<u32>::new(&reusing, "first", 4096).unwrap();
+    let kept = Buffer::<u32>::new(&gpu.device, "kept", 4096).unwrap();
+    first.give(&pool);
+    let used = gpu.device.memory_use().used;
+    let second = Buffer::<u32>::new(&reusing, "second", 2000).unwrap();
+    let third = Buffer::<u32>::new(&reusing, "third", 2000).unwrap();
+    assert_eq!(gpu.device.memory_use().used, used);
+    let mut recording = gpu.recording();
+    recording.fill(first.view(), 5);
+    recording.copy(first.view(), kept.view());
+    recording.fill(second.view(), 6);
+    recording.fill(third.view(), 7);
+    gpu.run(&recording);
+    assert_eq!(gpu.fetch(kept.view()), [5; 4096]);
+    assert_eq!((gpu.fetch(second.view()), gpu.fetch(third.view())), (vec![6; 2000], vec![7; 2000]));
+    pool.clear();
+    let fourth = Buffer::<u32>::new(&reusing, "fourth", 2000).unwrap();
+    assert!(gpu.device.memory_use().used > used && fourth.len() == 2000);
+}
