@@ -83,8 +83,9 @@ void main() {
     }
     base = subgroupBroadcastFirst(base);
     if (lost) {
-        // A triangle next to the point still is in that slot, or near it.
-        waiting.at[limit - list + base + before] = uvec2(point, h);
+        // The slot still has a triangle next to the point, with the new vertex, which has few neighbors, at corner 2.
+        uint from = (place & ON_EDGE) == 0u ? h + 1u : h;
+        waiting.at[limit - list + base + before] = uvec2(point, from);
     }
     if (!won) {
         return;

@@ -488,7 +488,7 @@ impl Shader for InsertGraft {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "1a6dbe81b114f66359913a2233d1f407f94c306a7689e77680c34ed6c3da9d48",
+        source_hash: "3537bb27a57a026a826faf08e8a6078e2de194e16a0ee46eb577c4b7b8c173b1",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

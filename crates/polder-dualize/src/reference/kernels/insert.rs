@@ -193,8 +193,8 @@ pub fn insert_graft(
             continue;
         }
         if !got(h / 3) || place & ON_EDGE != 0 && !got(other) {
-            // A triangle next to the point still is in that slot, or near it.
-            losers.push([point, h]);
+            // The slot still has a triangle next to the point, with the new vertex, which has few neighbors, at corner 2.
+            losers.push([point, if place & ON_EDGE == 0 { h + 1 } else { h }]);
             continue;
         }
         entry[0] |= WON;
