@@ -16,6 +16,7 @@ mod timing;
 use clap::{Parser, ValueEnum};
 use inputs::Input;
 use programs::Program;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 #[derive(Parser)]
@@ -36,6 +37,9 @@ struct Arguments {
     /// Also the largest case of the triangulations on a Vulkan device.
     #[arg(long)]
     full: bool,
+    /// A .node, .poly or .pslg to run on a Vulkan device instead of the usual cases.
+    #[arg(long)]
+    file: Option<PathBuf>,
     /// A small size and one run, to see that all works.
     #[arg(long)]
     quick: bool,
@@ -104,8 +108,9 @@ fn run(mut arguments: Arguments) -> Result<(), String> {
     }
     if arguments.what.contains(&What::Delaunay) {
         let runs = arguments.runs.unwrap_or(10);
-        let (quick, full) = (arguments.quick, arguments.full);
-        results.delaunay = Some(gpu::delaunay::run(runs, quick, full, !arguments.unchecked)?);
+        let sizes = (arguments.quick, arguments.full);
+        let file = arguments.file.as_deref();
+        results.delaunay = Some(gpu::delaunay::run(runs, sizes, !arguments.unchecked, file)?);
     }
     if arguments.what.contains(&What::Voronoi) {
         let runs = arguments.runs.unwrap_or(10);

@@ -10,13 +10,13 @@ use polder_io::generate;
 use polder_vulkan::Buffer;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// How long a card works before it is timed.
 const WARM_UP: Duration = Duration::from_millis(700);
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shape {
     Uniform,
     Lattice,
@@ -81,9 +81,11 @@ pub(crate) struct Results {
 
 #[derive(Debug, Serialize)]
 struct Case {
-    shape: Shape,
+    name: String,
     points: usize,
     triangles: usize,
+    /// The digest, if it was held against the CPU backend's.
+    digest: Option<String>,
     /// The median of all stages together, by timestamps.
     seconds: f64,
     runs: Vec<f64>,
@@ -129,32 +131,49 @@ struct HostToHost {
     download: f64,
 }
 
-pub(crate) fn run(runs: usize, quick: bool, full: bool, check: bool) -> Result<Results, String> {
+pub(crate) fn run(
+    runs: usize,
+    (quick, full): (bool, bool),
+    check: bool,
+    file: Option<&Path>,
+) -> Result<Results, String> {
     let mut on = OnDevice::open(runs).map_err(|error| error.to_string())?;
     let facts = on.facts().map_err(|error| error.to_string())?;
     let start = Instant::now();
     let mut gpu = Gpu::on(&on.device).map_err(|error| error.to_string())?;
     let opening = start.elapsed().as_secs_f64();
-    let mut wanted = if quick { QUICK.to_vec() } else { CASES.to_vec() };
+    let mut wanted = match file {
+        Some(_) => vec![],
+        None if quick => QUICK.to_vec(),
+        None => CASES.to_vec(),
+    };
     wanted.extend(full.then_some(FULL));
     let (mut cases, mut failures) = (Vec::new(), Vec::new());
-    for (shape, points, gdel2d) in wanted {
-        eprintln!("{}, {points} points...", shape.name());
-        let bench = Bench { shape, gdel2d, runs: runs.max(1), bandwidth: facts.bandwidth, check };
-        match bench.case(&mut gpu, &shape.make(points)) {
+    let mut measure = |name: String, gdel2d, pslg: Result<Pslg, String>| {
+        eprintln!("{name}...");
+        let bench = Bench { name: name.clone(), gdel2d, runs: runs.max(1), bandwidth: facts.bandwidth, check };
+        match pslg.map_err(Into::into).and_then(|pslg| bench.case(&mut gpu, &pslg)) {
             Ok(case) => cases.push(case),
             Err(error) => {
-                eprintln!("{}, {points} points: {error}", shape.name());
-                failures.push(format!("{}, {points} points: {error}", shape.name()));
+                eprintln!("{name}: {error}");
+                failures.push(format!("{name}: {error}"));
             }
         }
         gpu.release();
+    };
+    for (shape, points, gdel2d) in wanted {
+        measure(shape.name().into(), gdel2d, Ok(shape.make(points)));
+    }
+    if let Some(file) = file {
+        let points = super::read(file).map(|pslg| pslg.into_parts().0);
+        let pslg = points.and_then(|points| Pslg::new(points, vec![]).map_err(|error| error.to_string()));
+        measure(super::stem(file), None, pslg);
     }
     Ok(Results { device: facts, runs, checked: check, opening, cases, failures })
 }
 
 struct Bench {
-    shape: Shape,
+    name: String,
     gdel2d: Option<f64>,
     runs: usize,
     bandwidth: f64,
@@ -165,15 +184,19 @@ impl Bench {
     fn case(&self, gpu: &mut Gpu, pslg: &Pslg) -> Result<Case, Box<dyn std::error::Error>> {
         let points: &[DVec2] = pslg.points();
         let plain = Options::default();
-        let mut cpu_seconds = None;
+        let (mut cpu_seconds, mut digest) = (None, None);
         if self.check && points.len() <= LARGE {
             let start = Instant::now();
             let expected = triangulate(pslg, &Options::with_backend(Backend::Cpu))?.triangulation;
             cpu_seconds = Some(start.elapsed().as_secs_f64());
-            let found = gpu.triangulate(pslg, &plain)?.triangulation;
-            if found.digest() != expected.digest() || found != expected {
+            let found = gpu.triangulate(pslg, &plain)?;
+            if found.triangulation.digest() != expected.digest() || found.triangulation != expected {
                 return Err("the device gives another result than the CPU backend".into());
             }
+            if let Some(stage) = found.report.stages_on_cpu().next() {
+                return Err(format!("{} ran on the CPU", stage.name).into());
+            }
+            digest = Some(expected.digest().to_string());
         }
         let host_to_host = self.host_to_host(gpu, pslg)?;
         gpu.release();
@@ -203,9 +226,10 @@ impl Bench {
         let kernels: Vec<Kernel> = detailed.device.iter().flat_map(|device| &device.kernels).map(kernel_of).collect();
         let stages = last.stages.iter().map(|stage| self.stage(stage, &reports, &kernels, points.len()));
         Ok(Case {
-            shape: self.shape,
+            name: self.name.clone(),
             points: points.len(),
             triangles: last.triangles,
+            digest,
             seconds: crate::timing::median(&runs),
             runs,
             clock_seconds: crate::timing::median(&clock),
@@ -304,7 +328,7 @@ impl Results {
             let ratio = case.gdel2d_seconds.map_or("-".into(), |other| format!("{:.2}", case.seconds / other));
             println!(
                 "{:<26} {:>11} {:>9.3} {:>9} {:>6} {:>9.3} {:>8} {:>7.0} {:>10.1} {:>9}",
-                case.shape.name(),
+                case.name,
                 case.points,
                 ms(case.seconds),
                 option(case.gdel2d_seconds),
@@ -318,7 +342,10 @@ impl Results {
         }
         self.failures.iter().for_each(|failure| println!("no figures: {failure}"));
         for case in &self.cases {
-            println!("\n{}, {} points, {} triangles", case.shape.name(), case.points, case.triangles);
+            println!("\n{}, {} points, {} triangles", case.name, case.points, case.triangles);
+            if let Some(digest) = &case.digest {
+                println!("  digest as that of the CPU backend: {digest}");
+            }
             println!(
                 "  {:<16} {:>9} {:>10} {:>6} {:>6}  {:<28} counts",
                 "stage", "ms", "least MB", "of it", "rounds", "slowest kernel"

@@ -9,6 +9,19 @@ pub(crate) mod voronoi;
 
 pub(crate) use device::{DeviceFacts, Measured, OnDevice};
 
+use polder::Pslg;
+use std::path::Path;
+
+/// What a file holds.
+pub(crate) fn read(file: &Path) -> Result<Pslg, String> {
+    polder_io::Input::read(file).map(|input| input.pslg).map_err(|error| error.to_string())
+}
+
+/// What to call it.
+pub(crate) fn stem(file: &Path) -> String {
+    file.file_stem().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
+}
+
 /// Milliseconds.
 pub(crate) fn ms(seconds: f64) -> f64 {
     seconds * 1e3
