@@ -15,6 +15,7 @@
 mod crossings;
 mod error;
 mod insertion;
+pub mod kernels;
 pub mod reference;
 mod walk;
 

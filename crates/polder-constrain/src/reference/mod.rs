@@ -24,6 +24,7 @@ mod fan;
 mod inner;
 mod insert;
 mod intersection;
+pub mod kernels;
 mod walk;
 
 pub use configuration::{Configuration, TriangleChain, triangle_chain};

@@ -1,0 +1,5 @@
+//! What each kernel does, under its name.
+
+mod walk;
+
+pub use walk::find_spokes;
