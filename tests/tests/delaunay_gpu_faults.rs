@@ -1,0 +1,78 @@
+//! Whole triangulations with everything failing in turn that can fail.
+#![cfg(feature = "gpu-tests")]
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod vulkan_support;
+
+use polder::{Backend, Error, Gpu, Options, Pslg, Triangulation, triangulate};
+use polder_io::generate;
+use polder_vulkan::{Device, Error as EngineError};
+use vulkan_support::faults::fail_everywhere;
+
+/// An error of the facade, and the one of the engine that it stands for.
+type Failed = (Error, Option<EngineError>);
+
+fn failed(error: Error) -> Failed {
+    let engine = match &error {
+        Error::OutOfMemory { what } => Some(EngineError::OutOfMemory { what: what.clone(), bytes: 0, used: 0 }),
+        Error::DeviceLost { what } if *what == EngineError::DeviceLost.to_string() => Some(EngineError::DeviceLost),
+        Error::DeviceLost { what } if what.contains("did not finish") => Some(EngineError::Timeout { seconds: 0.0 }),
+        _ => None,
+    };
+    (error, engine)
+}
+
+fn fail(pslg: &Pslg) -> Triangulation {
+    let work = |device: &Device| -> Result<Triangulation, Failed> {
+        let output = Gpu::on(device).and_then(|mut gpu| gpu.triangulate(pslg, &Options::default()));
+        output.map(|output| output.triangulation).map_err(failed)
+    };
+    let struck = fail_everywhere(work, |(_, engine)| engine.as_ref());
+    println!("{struck:?}");
+    assert!(struck.refusals > 20, "{struck:?}");
+    // Upload, bounds, the stages, three downloads; each is a submission at least.
+    assert!(struck.losses >= 6 && struck.timeouts >= 6, "{struck:?}");
+    let device = Device::open(&vulkan_support::options()).unwrap();
+    work(&device).unwrap()
+}
+
+#[test]
+fn every_failure_is_an_error_and_the_next_call_works() {
+    let pslg = generate::clusters(300, 3, 1e-4, 5);
+    let pslg = Pslg::new(pslg.points().to_vec(), Vec::new()).unwrap();
+    let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
+    assert!(fail(&pslg) == expected);
+}
+
+#[test]
+fn every_failure_on_a_line_too() {
+    let pslg = generate::collinear(100, 5);
+    let pslg = Pslg::new(pslg.points().to_vec(), Vec::new()).unwrap();
+    let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
+    assert!(fail(&pslg) == expected);
+}
+
+/// What a wait has given up on may still be at work on the memory that the next call uses.
+#[test]
+fn a_gpu_that_timed_out_is_good_for_the_next_call() {
+    let pslgs = [generate::uniform(300, 6), generate::collinear(100, 6)];
+    let mut gpu = Gpu::on(&Device::open(&vulkan_support::options()).unwrap()).unwrap();
+    for pslg in &pslgs {
+        let expected = triangulate(pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
+        for index in 0.. {
+            gpu.device().faults().time_out_at_submission(index);
+            let done = gpu.triangulate(pslg, &Options::default());
+            gpu.device().faults().clear();
+            match done {
+                Ok(output) => {
+                    assert!(output.triangulation == expected && index > 5);
+                    break;
+                }
+                Err(error) => assert!(matches!(error, Error::DeviceLost { .. }), "{index}: {error}"),
+            }
+            assert!(gpu.triangulate(pslg, &Options::default()).unwrap().triangulation == expected, "{index}");
+        }
+    }
+    assert_eq!(gpu.device().validation_messages(), Vec::<String>::new());
+    assert_eq!(gpu.device().overruns(), Vec::<String>::new());
+}
