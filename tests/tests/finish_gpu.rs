@@ -7,15 +7,20 @@ mod vulkan_support;
 
 use finish_gpu_support::{Case, Shared, cases, hub, with_device};
 use polder_canonical::CanonicalError;
-use polder_canonical::gpu::{Counts, Input, Stage};
-use polder_canonical::reference::{Canonical, canonical, certify, check_triangles};
-use polder_mesh::{Chains, GHOST, Parts, Triangulation};
+use polder_canonical::gpu::{Chains, Counts, Input, Stage};
+use polder_canonical::reference::{Canonical, canonical, certify, check_triangles, kernels};
+use polder_mesh::{GHOST, Parts, Triangulation};
 use vulkan_support::Gpu;
 
 fn run(gpu: &mut Gpu, stage: &Stage, case: &Case) -> (Canonical, Counts) {
     let on_device = case.upload(gpu);
     let buffers = stage.buffers(case.order.len(), on_device.mesh.capacity()).unwrap();
-    let input = Input { mesh: &on_device.mesh, vertex_of: on_device.vertex_of.view(), order: on_device.order.view() };
+    let input = Input {
+        mesh: &on_device.mesh,
+        vertex_of: on_device.vertex_of.view(),
+        order: on_device.order.view(),
+        chains: None,
+    };
     let mut recording = gpu.recording();
     let read = stage.record(&mut recording, &input, &buffers).unwrap();
     let counts = read.counts(&gpu.run(&recording));
@@ -60,7 +65,7 @@ fn the_reference_is_the_order_of_polder_mesh() {
         for (&v, &input) in case.vertex_of.iter().zip(&case.order) {
             names[v as usize] = names[v as usize].min(input);
         }
-        let parts = Parts { representatives: result.representatives.clone(), chains: Chains::default() };
+        let parts = Parts { representatives: result.representatives.clone(), chains: Default::default() };
         let expected = Triangulation::from_mesh(&case.mesh, &names, parts.clone());
         assert_eq!(expected.triangles(), result.triangles, "{}", case.name);
         assert_eq!(expected.neighbors(), result.neighbors, "{}", case.name);
@@ -102,6 +107,36 @@ fn assert_refused(gpu: &mut Gpu, stages: &[Stage], case: &Case, what: &str) -> C
     expected.unwrap_err()
 }
 
+/// Chains come along in the numbering of the input, and what constraints came to is counted.
+#[test]
+fn chains_are_named_and_constrained_edges_counted() {
+    with_device(|Shared { gpu, stages, .. }| {
+        for case in cases(300, 43).into_iter().filter(|case| case.order.len() > 3) {
+            let on_device = case.upload(gpu);
+            let buffers = stages[0].buffers(case.order.len(), on_device.mesh.capacity()).unwrap();
+            let chains = [0, 1, 2, 1, 3, 0].map(|i| case.vertex_of[i]);
+            let (starts, vertices, count) =
+                (gpu.buffer(&[0_u32, 1, 3, 6]), gpu.buffer(&[&chains[..], &[9; 4]].concat()), gpu.buffer(&[6_u32]));
+            let input = Input {
+                mesh: &on_device.mesh,
+                vertex_of: on_device.vertex_of.view(),
+                order: on_device.order.view(),
+                chains: Some(Chains { starts: starts.view(), vertices: vertices.view(), count: Some(count.view()) }),
+            };
+            let mut recording = gpu.recording();
+            let read = stages[0].record(&mut recording, &input, &buffers).unwrap();
+            let counts = read.counts(&gpu.run(&recording));
+            let expected = canonical(&case.mesh, &case.vertex_of, &case.order);
+            let edges = kernels::count_constrained(&expected.constrained, &expected.neighbors);
+            assert_eq!((counts.constrained_edges, counts.through_vertices), (edges, 1), "{}", case.name);
+            assert!(edges > 0 || !case.name.contains("uniform, marked"), "{}", case.name);
+            let name = |v: u32| expected.representatives[case.order[v as usize] as usize];
+            let named = [&chains.map(name)[..], &[9; 4]].concat();
+            assert_eq!(gpu.fetch(vertices.view()), named, "{}", case.name);
+        }
+    });
+}
+
 #[test]
 fn what_is_no_triangulation_is_refused() {
     with_device(|Shared { gpu, stages, .. }| {
@@ -131,6 +166,13 @@ fn what_is_no_triangulation_is_refused() {
         let mut case = good.clone();
         case.mesh.triangles[finite[9]].swap(0, 1);
         assert!(matches!(assert_refused(gpu, stages, &case, "corners"), CanonicalError::Broken { .. }));
+        // An edge that is constrained on one side alone, within and at the hull.
+        for t in [finite[20], ghost] {
+            let mut case = good.clone();
+            case.mesh.constrained[t] = 2;
+            let triangle = t.min(good.mesh.links[t][1] as usize / 3) as u32;
+            assert_eq!(assert_refused(gpu, stages, &case, "mark"), CanonicalError::Broken { triangle });
+        }
 
         // A vertex more than the mesh has.
         let mut case = good.clone();
@@ -161,8 +203,12 @@ fn sizes_that_do_not_fit_are_errors() {
         let slots = on_device.mesh.capacity();
         let stage = &stages[0];
         assert!(stage.buffers(50, usize::MAX).is_err());
-        let input =
-            Input { mesh: &on_device.mesh, vertex_of: on_device.vertex_of.view(), order: on_device.order.view() };
+        let input = Input {
+            mesh: &on_device.mesh,
+            vertex_of: on_device.vertex_of.view(),
+            order: on_device.order.view(),
+            chains: None,
+        };
         let mut recording = gpu.recording();
         for (points, slots) in [(51, slots), (50, slots + 1), (50, slots - 1)] {
             let buffers = stage.buffers(points, slots).unwrap();

@@ -6,12 +6,11 @@ mod finish_gpu_support;
 mod vulkan_support;
 
 use finish_gpu_support::{Case, OnDevice, Shared, cases, hub, with_device};
-use polder_canonical::gpu::Line;
 use polder_canonical::kernels::*;
 use polder_canonical::reference::kernels::{self, Lists};
-use polder_canonical::reference::{self, Axis, Check};
+use polder_canonical::reference::{self, Check};
 use polder_flip::gpu::Arithmetic;
-use polder_mesh::{DVec2, NONE};
+use polder_mesh::NONE;
 use polder_vulkan::{Kernel, Shader, groups_for};
 use vulkan_support::{Gpu, words};
 
@@ -336,92 +335,60 @@ fn check_triangles() {
     });
 }
 
-/// Points on lines, with duplicates, zeros of both signs, and coordinates of any size.
-fn lines() -> Vec<(Vec<DVec2>, Axis)> {
-    let mut lines = Vec::new();
-    for count in [1, 2, 3, 255, 256, 257, 3000] {
-        let words = words(count as u64, count);
-        let some = |word: u32| (f64::from(word % 700) - 350.0) * f64::from(word % 3 + 1).powi(600);
-        let x = words.iter().map(|&word| some(word) * if word & 4096 == 0 { 1.0 } else { -1.0 });
-        let points: Vec<DVec2> = x.map(|x| DVec2::new(x, -7.0)).collect();
-        lines.push((points.iter().map(|p| DVec2::new(p.y, p.x)).collect(), Axis::Y));
-        lines.push((points, Axis::X));
-        lines.push((vec![DVec2::new(3.0, -0.0); count], Axis::X));
-    }
-    lines
-}
-
 #[test]
-fn line() {
-    with_device(|Shared { gpu, .. }| {
-        for (points, axis) in lines() {
-            let line = Line::new(&gpu.device, points.len()).unwrap();
-            let (uploaded, representatives) = (gpu.buffer(&points), gpu.buffer(&vec![7_u32; points.len()]));
-            let mut recording = gpu.recording();
-            let read = line.record(&mut recording, uploaded.view(), axis, representatives.view()).unwrap();
-            let vertices = read.vertices(&gpu.run(&recording));
-            let found = (gpu.fetch(representatives.view()), vertices);
-            assert_eq!(found, reference::line(&points, axis));
-            let lowest = |p: &DVec2| points.iter().position(|q| p == q).unwrap() as u32;
-            assert_eq!(found.0, points.iter().map(lowest).collect::<Vec<_>>());
-        }
-    });
-}
-
-#[test]
-fn line_keys() {
-    with_device(|Shared { gpu, .. }| {
-        for (points, axis) in lines() {
-            let count = points.len();
-            let (input, keys) = (gpu.buffer(&points), gpu.buffer(&vec![7_u64; count]));
-            let values = gpu.buffer(&vec![7_u32; count]);
-            let arguments = LineKeysArgs {
-                points: input.view().cast(),
-                keys: keys.view(),
-                values: values.view(),
-                axis: axis as u32,
-                count: count as u32,
+fn name_chains() {
+    with_steps(|gpu, steps, _| {
+        let points = steps.points() as u32;
+        for constraints in [1_usize, 2, 255, 256, 257, 700] {
+            let lengths: Vec<u32> = words(7, constraints).iter().map(|word| 1 + word % 4).chain([0]).collect();
+            let starts = scanned(&lengths);
+            let total = starts[constraints] as usize;
+            // Among them one that is no vertex, and behind them what is not to be touched.
+            let mut chains: Vec<u32> = words(8, total + 9).iter().map(|word| word % points).collect();
+            chains[total / 2] = points;
+            let [names, begins, vertices, counter, through] =
+                [&steps.names, &starts, &chains, &vec![total as u32], &vec![3]].map(|data| gpu.buffer(data));
+            let arguments = NameChainsArgs {
+                names: names.view(),
+                starts: begins.view(),
+                chains: vertices.view(),
+                through: through.view(),
+                counter: Some(counter.view()),
+                limit: chains.len() as u32,
+                constraints: constraints as u32,
+                count: points,
             };
-            run::<LineKeys>(gpu, count, &[], &arguments);
-            assert_eq!((gpu.fetch(keys.view()), gpu.fetch(values.view())), reference::line_keys(&points, axis));
+            run::<NameChains>(gpu, chains.len().max(constraints), &[], &arguments);
+            let expected = kernels::name_chains(&steps.names, &starts, &mut chains[..total]);
+            assert_eq!(gpu.fetch(vertices.view()), chains, "{}", steps.case.name);
+            assert_eq!(gpu.fetch(through.view()), [3 + expected], "{}", steps.case.name);
         }
     });
 }
 
 #[test]
-fn line_heads() {
-    with_device(|Shared { gpu, .. }| {
-        for (points, axis) in lines() {
-            let mut sorted = reference::line_keys(&points, axis).0;
-            sorted.sort_unstable();
-            let (keys, flags) = (gpu.buffer(&sorted), gpu.buffer(&vec![7_u32; sorted.len()]));
-            let arguments = LineHeadsArgs { keys: keys.view(), flags: flags.view(), count: sorted.len() as u32 };
-            run::<LineHeads>(gpu, sorted.len(), &[], &arguments);
-            assert_eq!(gpu.fetch(flags.view()), reference::line_heads(&sorted));
-        }
-    });
-}
-
-#[test]
-fn line_names() {
-    with_device(|Shared { gpu, .. }| {
-        for count in [1_u32, 2, 300, 1000] {
-            let (values, all): (Vec<u32>, Vec<u32>) = ((0..count).rev().collect(), (100..100 + count).collect());
-            let flags: Vec<u32> = words(count.into(), count as usize).iter().map(|word| word % 2).collect();
-            let flags: Vec<u32> =
-                flags.into_iter().enumerate().map(|(p, flag)| if p == 0 { 1 } else { flag }).collect();
-            let ranks = scanned(&flags);
-            let buffers = [&values, &flags, &ranks, &all, &vec![7; count as usize]].map(|data| gpu.buffer(data));
-            let arguments = LineNamesArgs {
-                values: buffers[0].view(),
-                flags: buffers[1].view(),
-                ranks: buffers[2].view(),
-                heads: buffers[3].view(),
-                representatives: buffers[4].view(),
-                count,
-            };
-            run::<LineNames>(gpu, count as usize, &[], &arguments);
-            assert_eq!(gpu.fetch(buffers[4].view()), reference::line_names(&values, &flags, &ranks, &all));
-        }
+fn count_constrained() {
+    with_steps(|gpu, steps, _| {
+        let case = &steps.case;
+        let result = reference::canonical(&case.mesh, &case.vertex_of, &case.order);
+        let count = result.triangles.len();
+        // Behind the last triangle anything may stand.
+        let mut bits = result.constrained.clone();
+        bits.resize(count.next_multiple_of(16) + 16, 7);
+        let (bits, neighbors) = (gpu.buffer(&bits), gpu.buffer(&result.neighbors));
+        let (edges, counter) = (gpu.buffer(&[2_u32]), gpu.buffer(&[count as u32]));
+        let arguments = CountConstrainedArgs {
+            constrained: bits.view().cast(),
+            neighbors: neighbors.view().cast(),
+            edges: edges.view(),
+            counter: Some(counter.view()),
+            limit: count as u32 + 8,
+        };
+        run::<CountConstrained>(gpu, count.div_ceil(4) + 2, &[], &arguments);
+        let expected = kernels::count_constrained(&result.constrained, &result.neighbors);
+        let edges_of_mesh = (0..3 * case.mesh.slots() as u32)
+            .filter(|&h| !case.mesh.is_deleted(h as usize / 3) && h < case.mesh.twin(h) && case.mesh.is_constrained(h));
+        assert_eq!(expected as usize, edges_of_mesh.count(), "{}", case.name);
+        assert_eq!(gpu.fetch(edges.view()), [2 + expected], "{}", case.name);
     });
 }

@@ -50,7 +50,7 @@ fn measure(device: &Device, family: &str, points: &[DVec2]) -> Result<(), Box<dy
     };
     let (vertex_of, order) = (uploaded(&mut engine, &vertex_of)?, uploaded(&mut engine, &order)?);
     let buffers = stage.buffers(positions.len(), on_device.capacity())?;
-    let input = Input { mesh: &on_device, vertex_of: vertex_of.view(), order: order.view() };
+    let input = Input { mesh: &on_device, vertex_of: vertex_of.view(), order: order.view(), chains: None };
     let mut recording = Recording::new(device);
     let read = stage.record(&mut recording, &input, &buffers)?;
 

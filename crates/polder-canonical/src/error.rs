@@ -4,7 +4,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum CanonicalError {
-    /// A link leads to an edge that does not lead back, or that has other ends.
+    /// A link leads to an edge that does not lead back, that has other ends, or that is constrained on one side alone.
     #[error("slot {triangle}: a link that does not lead back")]
     Broken {
         /// The lowest slot at fault.

@@ -78,6 +78,55 @@ impl Shader for CheckTriangles {
     }
 }
 
+/// How many edges of the result are constrained: each is counted in the lower of its triangles.
+#[derive(Debug, Clone, Copy)]
+pub enum CountConstrained {}
+
+/// Arguments of [`CountConstrained`].
+#[derive(Debug, Clone, Copy)]
+pub struct CountConstrainedArgs<'a> {
+    /// read
+    pub constrained: View<'a, u32>,
+    /// read
+    pub neighbors: View<'a, u32>,
+    /// read and written
+    pub edges: View<'a, u32>,
+    /// read, may be left out
+    pub counter: Option<View<'a, u32>>,
+    /// a value
+    pub limit: u32,
+}
+
+impl Shader for CountConstrained {
+    type Args<'a> = CountConstrainedArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "count_constrained",
+        words: include_spirv!("../spv/count_constrained.spv"),
+        without_float64: None,
+        argument_bytes: 36,
+        buffers: &[
+            BufferArgument { name: "constrained", offset: 0, access: Access::Read },
+            BufferArgument { name: "neighbors", offset: 8, access: Access::Read },
+            BufferArgument { name: "edges", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "counter", offset: 24, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "d8c646e15a0180d0e6c3036735bbed5599047b0ef68c53a550752b420fe92b5e",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.constrained);
+        encoder.buffer(8, args.neighbors);
+        encoder.buffer(16, args.edges);
+        encoder.optional(24, args.counter);
+        encoder.value(32, args.limit);
+    }
+}
+
 /// Each finite triangle goes to the list of its smallest vertex, by name: which corner that is (the lower two bits), and the
 /// place in the list (the rest), in the order of arrival. NONE for every other slot. Ghost triangles are counted.
 #[derive(Debug, Clone, Copy)]
@@ -184,6 +233,65 @@ impl Shader for ElectNames {
     }
 }
 
+/// The vertices along the constraints of a line, one behind the other, each in the direction of its constraint.
+#[derive(Debug, Clone, Copy)]
+pub enum LineChains {}
+
+/// Arguments of [`LineChains`].
+#[derive(Debug, Clone, Copy)]
+pub struct LineChainsArgs<'a> {
+    /// read
+    pub ends: View<'a, u32>,
+    /// read
+    pub places: View<'a, u32>,
+    /// read
+    pub starts: View<'a, u32>,
+    /// read
+    pub heads: View<'a, u32>,
+    /// written
+    pub chains: View<'a, u32>,
+    /// a value
+    pub constraints: u32,
+    /// a value
+    pub first: u32,
+    /// a value
+    pub limit: u32,
+}
+
+impl Shader for LineChains {
+    type Args<'a> = LineChainsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "line_chains",
+        words: include_spirv!("../spv/line_chains.spv"),
+        without_float64: None,
+        argument_bytes: 52,
+        buffers: &[
+            BufferArgument { name: "ends", offset: 0, access: Access::Read },
+            BufferArgument { name: "places", offset: 8, access: Access::Read },
+            BufferArgument { name: "starts", offset: 16, access: Access::Read },
+            BufferArgument { name: "heads", offset: 24, access: Access::Read },
+            BufferArgument { name: "chains", offset: 32, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "db57d188d45170c4937a6611bc5443ec91731c87a2a2330a3a6743152b889de5",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.ends);
+        encoder.buffer(8, args.places);
+        encoder.buffer(16, args.starts);
+        encoder.buffer(24, args.heads);
+        encoder.buffer(32, args.chains);
+        encoder.value(40, args.constraints);
+        encoder.value(44, args.first);
+        encoder.value(48, args.limit);
+    }
+}
+
 /// Of sorted keys, a one for each that differs from the one before; zeros else.
 #[derive(Debug, Clone, Copy)]
 pub enum LineHeads {}
@@ -273,6 +381,59 @@ impl Shader for LineKeys {
     }
 }
 
+/// How many vertices of a line a constraint runs through, its ends included; the sum of all in two words, the low one first;
+/// and how many run through more than two.
+#[derive(Debug, Clone, Copy)]
+pub enum LineLengths {}
+
+/// Arguments of [`LineLengths`].
+#[derive(Debug, Clone, Copy)]
+pub struct LineLengthsArgs<'a> {
+    /// read
+    pub ends: View<'a, u32>,
+    /// read
+    pub places: View<'a, u32>,
+    /// written
+    pub lengths: View<'a, u32>,
+    /// read and written
+    pub totals: View<'a, u32>,
+    /// a value
+    pub constraints: u32,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for LineLengths {
+    type Args<'a> = LineLengthsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "line_lengths",
+        words: include_spirv!("../spv/line_lengths.spv"),
+        without_float64: None,
+        argument_bytes: 40,
+        buffers: &[
+            BufferArgument { name: "ends", offset: 0, access: Access::Read },
+            BufferArgument { name: "places", offset: 8, access: Access::Read },
+            BufferArgument { name: "lengths", offset: 16, access: Access::Write },
+            BufferArgument { name: "totals", offset: 24, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "3c7360d2b79cda60c7dc44dbf4ca1ec21367ca5896d854f1d5a49ac599a81b74",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.ends);
+        encoder.buffer(8, args.places);
+        encoder.buffer(16, args.lengths);
+        encoder.buffer(24, args.totals);
+        encoder.value(32, args.constraints);
+        encoder.value(36, args.count);
+    }
+}
+
 /// Each point of a run of equal keys is represented by the first of the run, the lowest.
 #[derive(Debug, Clone, Copy)]
 pub enum LineNames {}
@@ -323,6 +484,55 @@ impl Shader for LineNames {
         encoder.buffer(24, args.heads);
         encoder.buffer(32, args.representatives);
         encoder.value(40, args.count);
+    }
+}
+
+/// For each point of a line how many different points lie before it.
+#[derive(Debug, Clone, Copy)]
+pub enum LinePlaces {}
+
+/// Arguments of [`LinePlaces`].
+#[derive(Debug, Clone, Copy)]
+pub struct LinePlacesArgs<'a> {
+    /// read
+    pub values: View<'a, u32>,
+    /// read
+    pub flags: View<'a, u32>,
+    /// read
+    pub ranks: View<'a, u32>,
+    /// written
+    pub places: View<'a, u32>,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for LinePlaces {
+    type Args<'a> = LinePlacesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "line_places",
+        words: include_spirv!("../spv/line_places.spv"),
+        without_float64: None,
+        argument_bytes: 36,
+        buffers: &[
+            BufferArgument { name: "values", offset: 0, access: Access::Read },
+            BufferArgument { name: "flags", offset: 8, access: Access::Read },
+            BufferArgument { name: "ranks", offset: 16, access: Access::Read },
+            BufferArgument { name: "places", offset: 24, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "2b21d0e608f084f98f8e558141e17d7fd3f8b46942eb81ddb03ea1c789d97abe",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.values);
+        encoder.buffer(8, args.flags);
+        encoder.buffer(16, args.ranks);
+        encoder.buffer(24, args.places);
+        encoder.value(32, args.count);
     }
 }
 
@@ -384,6 +594,65 @@ impl Shader for ListTriangles {
         encoder.buffer(40, args.keys);
         encoder.optional(48, args.counter);
         encoder.value(56, args.limit);
+    }
+}
+
+/// The vertices along constraints get their names; and chains with a vertex between their ends are counted.
+#[derive(Debug, Clone, Copy)]
+pub enum NameChains {}
+
+/// Arguments of [`NameChains`].
+#[derive(Debug, Clone, Copy)]
+pub struct NameChainsArgs<'a> {
+    /// read
+    pub names: View<'a, u32>,
+    /// read
+    pub starts: View<'a, u32>,
+    /// read and written
+    pub chains: View<'a, u32>,
+    /// read and written
+    pub through: View<'a, u32>,
+    /// read, may be left out
+    pub counter: Option<View<'a, u32>>,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub constraints: u32,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for NameChains {
+    type Args<'a> = NameChainsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "name_chains",
+        words: include_spirv!("../spv/name_chains.spv"),
+        without_float64: None,
+        argument_bytes: 52,
+        buffers: &[
+            BufferArgument { name: "names", offset: 0, access: Access::Read },
+            BufferArgument { name: "starts", offset: 8, access: Access::Read },
+            BufferArgument { name: "chains", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "through", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "counter", offset: 32, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "974e464fa0db294cf9f95dfed4cd3ab9d3e1680e4a0618ba55ed022f63ea010c",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.names);
+        encoder.buffer(8, args.starts);
+        encoder.buffer(16, args.chains);
+        encoder.buffer(24, args.through);
+        encoder.optional(32, args.counter);
+        encoder.value(40, args.limit);
+        encoder.value(44, args.constraints);
+        encoder.value(48, args.count);
     }
 }
 

@@ -26,6 +26,24 @@ impl Chains {
         Self { offsets, vertices: Vec::with_capacity(2 * constraints) }
     }
 
+    /// From an array of all vertices, one chain behind the other: chain `i` is `vertices[offsets[i]..offsets[i + 1]]`. `None`
+    /// if the offsets do not begin with 0, fall, or do not end with the number of vertices.
+    pub fn from_parts(offsets: Vec<u32>, vertices: Vec<u32>) -> Option<Self> {
+        let ends = (offsets.first().copied(), offsets.last().map(|&end| end as usize));
+        let fit = ends == (Some(0), Some(vertices.len())) && offsets.windows(2).all(|w| w[0] <= w[1]);
+        fit.then_some(Self { offsets, vertices })
+    }
+
+    /// Where the chain of each constraint begins among the [`vertices`](Self::vertices), and where the last one ends.
+    pub fn offsets(&self) -> &[u32] {
+        &self.offsets
+    }
+
+    /// The vertices along all constraints, one chain behind the other.
+    pub fn vertices(&self) -> &[u32] {
+        &self.vertices
+    }
+
     /// Appends the chain of the next constraint.
     ///
     /// # Panics
@@ -61,6 +79,23 @@ impl Chains {
     pub fn rename(&mut self, names: &[u32]) {
         for v in &mut self.vertices {
             *v = names[*v as usize];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Chains;
+
+    #[test]
+    fn parts_make_the_chains_that_were_pushed() {
+        let mut chains = Chains::with_capacity(3);
+        [vec![4, 1, 2], vec![7], vec![0, 3]].into_iter().for_each(|chain| chains.push(chain));
+        assert_eq!((chains.offsets(), chains.vertices()), (&[0, 3, 4, 6][..], &[4, 1, 2, 7, 0, 3][..]));
+        assert_eq!(Chains::from_parts(chains.offsets().to_vec(), chains.vertices().to_vec()), Some(chains));
+        assert_eq!(Chains::from_parts(vec![0], vec![]), Some(Chains::default()));
+        for (offsets, vertices) in [(vec![], 0), (vec![1], 1), (vec![0, 2], 1), (vec![0, 2, 1], 1), (vec![0], 2)] {
+            assert_eq!(Chains::from_parts(offsets, vec![5; vertices]), None);
         }
     }
 }

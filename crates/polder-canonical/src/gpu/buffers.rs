@@ -7,7 +7,7 @@ use polder_vulkan::{Buffer, Device, Error, Estimate, ReadBack, Recording, RunRep
 
 /// Kernels reach 4 GiB from an address: that many triangles of 12 bytes.
 const MOST_SLOTS: usize = (1 << 30) / 3;
-const WORDS: usize = 36;
+const WORDS: usize = 44;
 
 /// Places of single words in the counts: views begin at multiples of 4 words.
 #[derive(Clone, Copy)]
@@ -22,6 +22,9 @@ pub(super) enum Word {
     Clockwise = 24,
     Reflex = 28,
     Groups = 32,
+    /// Zero at first.
+    ConstrainedEdges = 36,
+    Through = 40,
 }
 
 /// Results and scratch memory of the step, for some number of points and slots.
@@ -113,7 +116,7 @@ impl Buffers {
         self.neighbors.view()
     }
 
-    /// A byte for each triangle, whose bit `k` says that edge `k` is constrained.
+    /// A byte for each triangle, whose bit `k` says that the edge opposite corner `k` is constrained.
     pub fn constrained(&self) -> View<'_, u8> {
         self.constrained.view().cast()
     }
@@ -157,6 +160,10 @@ pub struct Counts {
     pub vertices: u32,
     /// Lists of triangles that a workgroup sorted.
     pub long_lists: u32,
+    /// Edges that are constrained, counted if there were chains.
+    pub constrained_edges: u32,
+    /// Chains with a vertex between their ends.
+    pub through_vertices: u32,
     /// What the certificate found.
     pub check: Check,
 }
@@ -189,6 +196,8 @@ impl CountsRead {
             ghosts: word(Word::Ghosts),
             vertices: self.points.saturating_sub(word(Word::Duplicates)),
             long_lists: word(Word::Long),
+            constrained_edges: word(Word::ConstrainedEdges),
+            through_vertices: word(Word::Through),
             check: Check {
                 broken: word(Word::Broken),
                 clockwise: word(Word::Clockwise),

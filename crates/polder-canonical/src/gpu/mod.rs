@@ -10,15 +10,16 @@
 //!    a list no two triangles share their second corner, so a triangle's place is the number of lower ones. Long lists
 //!    (a hub with its fan) are sorted by a workgroup each.
 //! 4. *Output*: each triangle, with its neighbors' places, goes to its own.
-//! 5. *Certificate* (module [`reference`](crate::reference)): one look at each triangle and the ones next to it.
+//! 5. *Chains*, if there are constraints: the vertices along each get their names.
+//! 6. *Certificate* (module [`reference`](crate::reference)): one look at each triangle and the ones next to it.
 
 mod buffers;
 mod line;
 mod record;
 
 pub use buffers::{Buffers, Counts, CountsRead};
-pub use line::{Line, LineRead};
-pub use record::Input;
+pub use line::{Line, LineChains, LineChainsRead, LineRead};
+pub use record::{Chains, Input};
 
 use crate::kernels::*;
 use polder_flip::gpu::Arithmetic;
@@ -44,6 +45,8 @@ pub struct Stage {
     sort_long: Kernel<SortLong>,
     write_triangles: Kernel<WriteTriangles>,
     check_triangles: Kernel<CheckTriangles>,
+    name_chains: Kernel<NameChains>,
+    count_constrained: Kernel<CountConstrained>,
 }
 
 /// The longest list that is compared all with all.
@@ -81,6 +84,8 @@ impl Stage {
             sort_long: Kernel::new(device, &[("WORKGROUP", wide)])?,
             write_triangles: Kernel::new(device, &[])?,
             check_triangles: arithmetic.kernel(device, &[])?,
+            name_chains: Kernel::new(device, &[])?,
+            count_constrained: Kernel::new(device, &[])?,
         })
     }
 

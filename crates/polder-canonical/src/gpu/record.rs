@@ -17,6 +17,19 @@ pub struct Input<'a> {
     pub vertex_of: View<'a, u32>,
     /// For each point its input index.
     pub order: View<'a, u32>,
+    /// The vertices along constraints, if there are any.
+    pub chains: Option<Chains<'a>>,
+}
+
+/// For each constraint the vertices along it, one chain behind the other. The step gives them their names, in place.
+#[derive(Clone, Copy, Debug)]
+pub struct Chains<'a> {
+    /// Where the chain of each constraint begins, and where the last one ends.
+    pub starts: View<'a, u32>,
+    /// The vertices.
+    pub vertices: View<'a, u32>,
+    /// How many there are, or less than all of the view; all without.
+    pub count: Option<View<'a, u32>>,
 }
 
 impl Stage {
@@ -31,6 +44,9 @@ impl Stage {
         recording.fill(buffers.counts.slice(Word::Broken as usize..Word::Groups as usize)?, NONE);
         self.record_names(recording, input, buffers)?;
         self.record_order(recording, input, buffers)?;
+        if let Some(chains) = &input.chains {
+            self.record_chains(recording, chains, buffers)?;
+        }
         self.record_check(recording, input, buffers)?;
         Ok(buffers.read_counts(recording))
     }
@@ -132,6 +148,31 @@ impl Stage {
             slot_limit: limit,
         };
         recording.dispatch(&self.write_triangles, groups_for(3 * slots, WORKGROUP), &arguments);
+        Ok(())
+    }
+
+    /// Chains in the numbering of the input; what constraints came to is counted.
+    fn record_chains(&self, recording: &mut Recording, chains: &Chains<'_>, buffers: &Buffers) -> Result<(), Error> {
+        let (constraints, vertices) = (chains.starts.len().saturating_sub(1), chains.vertices.len());
+        let arguments = NameChainsArgs {
+            names: buffers.names.view(),
+            starts: chains.starts,
+            chains: chains.vertices,
+            through: buffers.word(Word::Through)?,
+            counter: chains.count,
+            limit: vertices as u32,
+            constraints: constraints as u32,
+            count: buffers.points as u32,
+        };
+        recording.dispatch(&self.name_chains, groups_for(vertices.max(constraints), WORKGROUP), &arguments);
+        let arguments = CountConstrainedArgs {
+            constrained: buffers.constrained.view(),
+            neighbors: buffers.neighbors.view().cast(),
+            edges: buffers.word(Word::ConstrainedEdges)?,
+            counter: Some(buffers.word(Word::Finite)?),
+            limit: buffers.slots as u32,
+        };
+        recording.dispatch(&self.count_constrained, groups_for(buffers.slots.div_ceil(4), WORKGROUP), &arguments);
         Ok(())
     }
 

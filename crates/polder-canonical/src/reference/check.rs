@@ -2,7 +2,7 @@
 //!
 //! What is checked, each of it by looking at one triangle and the ones next to it:
 //!
-//! 1. Links lead back, and join the same two vertices.
+//! 1. Links lead back, join the same two vertices, and have the same mark of a constrained edge.
 //! 2. Every finite triangle is strictly counterclockwise.
 //! 3. The hull turns right nowhere, and folds back nowhere but at the two ends of a chain.
 //! 4. It has one lexicographically lowest corner.
@@ -25,7 +25,7 @@ use polder_predicates::{Sign, orient2d};
 /// What one look at every triangle finds: the lowest slots at fault, [`NONE`] for none.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Check {
-    /// A link that does not lead back, or joins different vertices.
+    /// A link that does not lead back, joins different vertices, or has another mark on its other side.
     pub broken: u32,
     /// A finite triangle that is not strictly counterclockwise.
     pub clockwise: u32,
@@ -76,6 +76,7 @@ fn leads_back(mesh: &GhostMesh, h: u32) -> bool {
     let g = mesh.twin(h);
     g as usize / 3 < mesh.slots()
         && mesh.twin(g) == h
+        && mesh.is_constrained(g) == mesh.is_constrained(h)
         && mesh.origin(h) == mesh.destination(g)
         && mesh.destination(h) == mesh.origin(g)
 }

@@ -158,3 +158,19 @@ pub fn write_triangles(
     }
     (triangles, neighbors, constrained)
 }
+
+/// Renames the vertices along constraints, whose chains begin at `starts`; returns how many chains have more than two.
+pub fn name_chains(names: &[u32], starts: &[u32], chains: &mut [u32]) -> u32 {
+    for v in chains {
+        *v = names.get(*v as usize).copied().unwrap_or(NONE);
+    }
+    starts.windows(2).filter(|w| w[1] - w[0] > 2).count() as u32
+}
+
+/// How many edges of a result are constrained.
+pub fn count_constrained(constrained: &[u8], neighbors: &[[u32; 3]]) -> u32 {
+    let in_lower = |(t, (&bits, row)): (u32, (&u8, &[u32; 3]))| {
+        (0..3).filter(|&k| bits >> k & 1 == 1 && row[k] > t).count() as u32
+    };
+    (0..).zip(constrained.iter().zip(neighbors)).map(in_lower).sum()
+}

@@ -2,6 +2,8 @@
 //!
 //! Two different points of a line differ in x, or, on a vertical line, in y. So that coordinate alone sorts them, and equal
 //! ones stay in the order of their indices.
+//!
+//! A constraint among them runs through all vertices between its ends.
 
 use glam::DVec2;
 
@@ -50,4 +52,36 @@ pub fn line_names(values: &[u32], flags: &[u32], ranks: &[u32], heads: &[u32]) -
         representatives[values[p] as usize] = heads[(ranks[p] + flags[p] - 1) as usize];
     }
     representatives
+}
+
+/// For each point how many different points lie before it on the line.
+pub fn line_places(values: &[u32], flags: &[u32], ranks: &[u32]) -> Vec<u32> {
+    let mut places = vec![0; values.len()];
+    for p in 0..values.len() {
+        places[values[p] as usize] = ranks[p] + flags[p] - 1;
+    }
+    places
+}
+
+/// How many vertices each constraint runs through, its ends included; the sum; how many run through more than two.
+pub fn line_lengths(ends: &[[u32; 2]], places: &[u32]) -> (Vec<u32>, u64, u32) {
+    let length = |[a, b]: &[u32; 2]| places[*a as usize].abs_diff(places[*b as usize]) + 1;
+    let lengths: Vec<u32> = ends.iter().map(length).collect();
+    let through = lengths.iter().filter(|&&length| length > 2).count() as u32;
+    let sum = lengths.iter().map(|&length| u64::from(length)).sum();
+    (lengths, sum, through)
+}
+
+/// The vertices along each constraint, one chain behind the other. `heads` are the vertices along the line.
+pub fn line_chains(ends: &[[u32; 2]], places: &[u32], heads: &[u32]) -> Vec<u32> {
+    let mut chains = Vec::new();
+    for ends in ends {
+        let [from, to] = ends.map(|v| places[v as usize] as usize);
+        if from <= to {
+            chains.extend_from_slice(&heads[from..=to]);
+        } else {
+            chains.extend(heads[to..=from].iter().rev());
+        }
+    }
+    chains
 }

@@ -5,7 +5,7 @@ pub mod kernels;
 mod line;
 
 pub use check::{Check, certify, check_triangles};
-pub use line::{Axis, line, line_heads, line_keys, line_names};
+pub use line::{Axis, line, line_chains, line_heads, line_keys, line_lengths, line_names, line_places};
 
 use polder_mesh::{GhostMesh, NONE};
 

@@ -90,7 +90,7 @@ impl Pipeline {
         let flip = held.flips.read(recording);
 
         recording.section("canonical_order");
-        let input = canonical::Input { mesh, vertex_of: held.insert.vertex_of(), order };
+        let input = canonical::Input { mesh, vertex_of: held.insert.vertex_of(), order, chains: None };
         let canonical = self.canonical.record(recording, &input, &held.canonical)?;
         Ok(Reads { voronoi, dualize, shift, hull, insert, flip, canonical })
     }
