@@ -133,6 +133,18 @@ fn a_second_call_of_the_same_size_allocates_nothing() {
 }
 
 #[test]
+fn memory_that_is_made_while_the_device_works_holds_the_result() {
+    let mut gpu = open(Arithmetic::Filtered);
+    let uniform = generate::uniform(110_000, 3);
+    let (some, none) = (generate::uniform(1000, 3), Pslg::new(vec![[1.0, 2.0].into(); 100_000], vec![]).unwrap());
+    let repeated = Pslg::new(some.points().repeat(100), vec![]).unwrap();
+    for pslg in [uniform, repeated, none] {
+        assert_same(&mut gpu, "many points", &pslg, &Options::default());
+    }
+    close(gpu);
+}
+
+#[test]
 fn points_and_result_may_stay_on_the_device() {
     let device = Device::open(&vulkan_support::options()).unwrap();
     let pslg = generate::gaussian(3000, 2);
@@ -148,6 +160,10 @@ fn points_and_result_may_stay_on_the_device() {
     assert_eq!(own.download_vec(result.neighbors().unwrap().unwrap()).unwrap(), expected.neighbors());
     assert_eq!(own.download_vec(result.representatives().unwrap()).unwrap(), expected.representatives());
     assert!(result.fetch().unwrap() == expected);
+    let mut kept = expected.clone();
+    let place = kept.triangles().as_ptr();
+    result.fetch_into(&mut kept).unwrap();
+    assert!(kept == expected && kept.triangles().as_ptr() == place);
 
     let mut bad = pslg.points().to_vec();
     bad[1234].y = f64::NAN;

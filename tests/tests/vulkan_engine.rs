@@ -6,7 +6,7 @@ mod vulkan_support;
 
 use polder_vulkan::kernels::{CopyWords, CopyWordsArgs, DispatchSize, DispatchSizeArgs, ScanSums, ScanSumsArgs};
 use polder_vulkan::primitives::{Scan, Sort};
-use polder_vulkan::{Buffer, Error, Kernel, Recording, RunOptions, Timings, groups_for, reference};
+use polder_vulkan::{Buffer, Downloads, Error, Kernel, Recording, RunOptions, Timings, groups_for, reference};
 use std::cell::{Cell, RefCell};
 use vulkan_support::{Gpu, words};
 
@@ -160,7 +160,7 @@ fn a_long_chain_keeps_its_order() {
 #[test]
 fn transfers_of_more_than_staging_holds() {
     let mut gpu = Gpu::open();
-    // Two chunks and a half, and odd bytes.
+    // More chunks than fly at once, and odd bytes.
     let data: Vec<u8> = (0..(80 << 20) + 3).map(|index: u32| (index ^ (index >> 13)) as u8).collect();
     let buffer = gpu.buffer(&data);
     assert!(gpu.fetch(buffer.view()) == data);
@@ -169,6 +169,29 @@ fn transfers_of_more_than_staging_holds() {
     gpu.engine.upload(part, &data[..100]).unwrap();
     assert!(gpu.fetch(part)[..101] == [&data[..100], &data[(1 << 20) + 100..=(1 << 20) + 100]].concat());
     assert_eq!(gpu.fetch(buffer.slice(0..0).unwrap()), Vec::<u8>::new());
+}
+
+#[test]
+fn several_downloads_go_as_one_into_memory_that_is_kept() {
+    let mut gpu = Gpu::open();
+    let bytes: Vec<u8> = (0..(5 << 20) + 7).map(|index: u32| (index ^ (index >> 11)) as u8).collect();
+    let (long, none, short) = (gpu.buffer(&bytes), gpu.buffer::<u64>(&[]), gpu.buffer(&[[1_u32, 2, 3], [4, 5, 6]]));
+    let (mut a, mut b, mut c) = (polder_vulkan::room_for::<u8>(bytes.len() + 5), vec![7_u64; 3], vec![[9_u32; 3]]);
+    let place = a.as_ptr();
+    for _ in 0..2 {
+        let downloads = Downloads::new().and(long.view(), &mut a).and(none.view(), &mut b).and(short.view(), &mut c);
+        gpu.engine.fetch(downloads).unwrap();
+        assert!(a == bytes && b.is_empty() && c == [[1, 2, 3], [4, 5, 6]]);
+        assert_eq!(a.as_ptr(), place);
+    }
+    gpu.device.faults().time_out_at_submission(1);
+    let error = gpu.engine.fetch(Downloads::new().and(long.view(), &mut a).and(short.view(), &mut c)).unwrap_err();
+    assert!(matches!(error, Error::Timeout { .. }) && a.is_empty() && c.is_empty(), "{error:?}");
+    gpu.device.faults().clear();
+    assert!(gpu.fetch(long.view()) == bytes);
+    let mut other = Gpu::open();
+    let foreign = other.buffer(&[1_u32; 4]);
+    assert!(matches!(gpu.engine.download_vec(foreign.view()), Err(Error::Recording { command: "download", .. })));
 }
 
 #[test]

@@ -40,6 +40,6 @@ pub use ids::{ConstraintId, EdgeId, TriangleId, VertexId};
 pub use monitor::{Cancelled, Monitor, Progress};
 pub use pslg::{Constraint, Pslg};
 pub use regions::Regions;
-pub use triangulation::{Edge, Parts, Triangulation};
+pub use triangulation::{Arrays, Edge, Parts, Triangulation};
 
 pub use glam::DVec2;

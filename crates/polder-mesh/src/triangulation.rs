@@ -33,6 +33,19 @@ pub struct Parts {
     pub chains: Chains,
 }
 
+/// The arrays of a triangulation, as [`Triangulation::from_canonical`] takes them.
+#[derive(Clone, Debug, Default)]
+pub struct Arrays {
+    /// [`Triangulation::triangles`].
+    pub triangles: Vec<[u32; 3]>,
+    /// [`Triangulation::neighbors`].
+    pub neighbors: Vec<[u32; 3]>,
+    /// [`Triangulation::constrained_bits`].
+    pub constrained: Vec<u8>,
+    /// All else.
+    pub parts: Parts,
+}
+
 /// An edge of a triangulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
@@ -101,6 +114,20 @@ impl Triangulation {
         let Parts { representatives, chains } = parts;
         let (added, half_edges) = (Vec::new(), OnceLock::new());
         Ok(Self { triangles, neighbors, constrained, representatives, chains, added, half_edges })
+    }
+
+    /// Gives its arrays back; what vertices were added is forgotten.
+    pub fn into_arrays(self) -> Arrays {
+        let Self { triangles, neighbors, constrained, representatives, chains, .. } = self;
+        Arrays { triangles, neighbors, constrained, parts: Parts { representatives, chains } }
+    }
+
+    /// Gives back memory that it does not need.
+    pub fn shrink_to_fit(&mut self) {
+        self.triangles.shrink_to_fit();
+        self.neighbors.shrink_to_fit();
+        self.constrained.shrink_to_fit();
+        self.representatives.shrink_to_fit();
     }
 
     /// A triangulation from bare triangles, as a mesh file gives them: neighbors are found by sorting edges.

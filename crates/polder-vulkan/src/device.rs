@@ -267,7 +267,13 @@ impl Device {
         self.inner.instance.messages()
     }
 
-    /// Pipelines compiled so far: one for each kernel and choice of its constants.
+    /// Compiles all kernels that were made on this device and are not compiled yet, side by side by all threads of
+    /// rayon's pool. An engine does the same before it runs anything.
+    pub fn compile(&self) -> Result<(), Error> {
+        self.inner.pipelines.compile(&self.inner)
+    }
+
+    /// Pipelines made so far or to be made: one for each kernel and choice of its constants.
     pub fn pipelines(&self) -> usize {
         self.inner.pipelines.count()
     }

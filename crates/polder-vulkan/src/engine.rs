@@ -127,6 +127,8 @@ impl Engine {
             let device = Device { inner: self.submitter.device.clone(), pool: None };
             self.ahead = Some(known.map_or_else(|| Ahead::new(&device, recording), Ok)?);
         }
+        let device = &self.submitter.device;
+        device.pipelines.compile(device)?;
         let timed = options.timestamps || recording.has_sections();
         if timed && self.queries.is_none() && self.submitter.device.info.timestamps {
             self.queries = Some(Queries::new(&self.submitter.device)?);

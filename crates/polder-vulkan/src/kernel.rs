@@ -6,84 +6,115 @@ use crate::error::Called;
 use crate::info::Feature;
 use crate::shader::{Code, Shader, Side};
 use ash::vk;
+use rayon::prelude::*;
 use std::collections::HashMap;
 use std::marker::PhantomData;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
 
 pub(crate) struct KernelInner {
     pub(crate) name: &'static str,
-    pub(crate) pipeline: vk::Pipeline,
-    pub(crate) layout: vk::PipelineLayout,
+    compiled: Arc<Compiled>,
     pub(crate) device: Arc<DeviceInner>,
 }
 
-/// What was compiled. It belongs to its device, and goes with it.
+/// What a driver made of a shader. It belongs to its device, and goes with it.
 #[derive(Clone, Copy)]
 pub(crate) struct Pipeline {
-    pipeline: vk::Pipeline,
-    layout: vk::PipelineLayout,
+    pub(crate) raw: vk::Pipeline,
+    pub(crate) layout: vk::PipelineLayout,
 }
 
-impl Pipeline {
-    /// # Safety
-    ///
-    /// It is of this device, in no use, and never used again.
-    unsafe fn destroy(self, raw: &ash::Device) {
-        // SAFETY: as the caller says.
-        unsafe {
-            raw.destroy_pipeline(self.pipeline, None);
-            raw.destroy_pipeline_layout(self.layout, None);
+/// A shader with its constants, compiled or to be compiled.
+struct Compiled {
+    code: Code,
+    values: Vec<u32>,
+    pipeline: OnceLock<Pipeline>,
+    /// Held by who compiles it.
+    compiling: Mutex<()>,
+}
+
+impl Compiled {
+    /// Compiles it, if nobody did; not for good if that fails, as memory may be free again later.
+    fn get(&self, device: &DeviceInner) -> Result<Pipeline, Error> {
+        if let Some(known) = self.pipeline.get() {
+            return Ok(*known);
+        }
+        let _one = self.compiling.lock().unwrap_or_else(PoisonError::into_inner);
+        match self.pipeline.get() {
+            Some(known) => Ok(*known),
+            None => {
+                device.alive()?;
+                let made = build(device, &self.code, &self.values)?;
+                Ok(*self.pipeline.get_or_init(|| made))
+            }
         }
     }
 }
 
-type Made = HashMap<(usize, Vec<u32>), Pipeline>;
+impl KernelInner {
+    pub(crate) fn pipeline(&self) -> Result<Pipeline, Error> {
+        self.compiled.get(&self.device)
+    }
+}
 
-/// All that was compiled for a device, by code and constants.
+type Known = HashMap<(usize, Vec<u32>), Arc<Compiled>>;
+
+/// All kernels that were asked for on a device, by code and constants.
 #[derive(Default)]
 pub(crate) struct Pipelines {
-    made: Mutex<Made>,
+    known: Mutex<Known>,
+    /// Those that may have to be compiled.
+    waiting: Mutex<Vec<Arc<Compiled>>>,
 }
 
 impl Pipelines {
-    fn get(&self, device: &DeviceInner, code: &Code, values: Vec<u32>) -> Result<Pipeline, Error> {
-        device.alive()?;
+    fn get(&self, code: &Code, values: Vec<u32>) -> Arc<Compiled> {
         // Code is static, so its place tells it from all other code.
-        let key = (code.words.as_ptr() as usize, values);
-        if let Some(known) = self.made().get(&key) {
-            return Ok(*known);
-        }
-        // Unlocked: threads may compile side by side.
-        let (pipeline, layout) = build(device, code, &key.1)?;
-        let own = Pipeline { pipeline, layout };
-        let kept = *self.made().entry(key).or_insert(own);
-        if kept.pipeline != own.pipeline {
-            // SAFETY: made a moment ago; another thread was faster, and nobody knows of this one.
-            unsafe { own.destroy(&device.raw) };
-        }
-        Ok(kept)
+        let key = (code.words.as_ptr() as usize, values.clone());
+        let new = || {
+            let new = Compiled { code: *code, values, pipeline: OnceLock::new(), compiling: Mutex::default() };
+            let new = Arc::new(new);
+            self.waiting().push(Arc::clone(&new));
+            new
+        };
+        Arc::clone(self.known().entry(key).or_insert_with(new))
     }
 
-    fn made(&self) -> MutexGuard<'_, Made> {
-        self.made.lock().unwrap_or_else(PoisonError::into_inner)
+    /// Compiles what waits for it, by all threads of rayon's pool, the longest first.
+    pub(crate) fn compile(&self, device: &DeviceInner) -> Result<(), Error> {
+        let mut waiting = std::mem::take(&mut *self.waiting());
+        waiting.sort_unstable_by_key(|kernel| std::cmp::Reverse(kernel.code.words.len()));
+        waiting.par_iter().with_max_len(1).try_for_each(|kernel| kernel.get(device).map(|_| ()))
+    }
+
+    fn known(&self) -> MutexGuard<'_, Known> {
+        self.known.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn waiting(&self) -> MutexGuard<'_, Vec<Arc<Compiled>>> {
+        self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     pub(crate) fn count(&self) -> usize {
-        self.made().len()
+        self.known().len()
     }
 
     /// Once nothing is left that was made from the device.
     pub(crate) fn destroy(&mut self, raw: &ash::Device) {
-        let made = self.made.get_mut().unwrap_or_else(PoisonError::into_inner);
-        for (_, pipeline) in made.drain() {
+        let known = self.known.get_mut().unwrap_or_else(PoisonError::into_inner);
+        for Pipeline { raw: pipeline, layout } in known.drain().filter_map(|(_, kernel)| kernel.pipeline.get().copied())
+        {
             // SAFETY: of this device; kernels keep their device, and recordings and engines what is in flight, so it is
-            // in no use.
-            unsafe { pipeline.destroy(raw) };
+            // in no use, and all that could use it is gone.
+            unsafe {
+                raw.destroy_pipeline(pipeline, None);
+                raw.destroy_pipeline_layout(layout, None);
+            }
         }
     }
 }
 
-/// A shader, compiled for a device.
+/// A shader, compiled for a device: by [`Device::compile`], or else before it first runs.
 pub struct Kernel<S> {
     pub(crate) inner: Arc<KernelInner>,
     workgroup: [u32; 3],
@@ -103,7 +134,7 @@ impl<S> std::fmt::Debug for Kernel<S> {
 }
 
 impl<S: Shader> Kernel<S> {
-    /// Compiles once a device; again with the same constants it costs a look into a table. `constants` sets
+    /// Compiled once a device: the same shader with the same constants is the same kernel. `constants` sets
     /// specialization constants by name; the others keep their defaults. Fails where the device lacks a feature or the
     /// workgroup passes its limits. A device without f64 gets the shader's code without f64, if there is any.
     pub fn new(device: &Device, constants: &[(&'static str, u32)]) -> Result<Self, Error> {
@@ -129,8 +160,9 @@ impl<S: Shader> Kernel<S> {
             }
         });
         check(device, code, workgroup)?;
-        let Pipeline { pipeline, layout } = device.inner.pipelines.get(&device.inner, code, values)?;
-        let inner = KernelInner { name: code.name, pipeline, layout, device: Arc::clone(&device.inner) };
+        device.inner.alive()?;
+        let compiled = device.inner.pipelines.get(code, values);
+        let inner = KernelInner { name: code.name, compiled, device: Arc::clone(&device.inner) };
         Ok(Kernel { inner: Arc::new(inner), workgroup, of: PhantomData })
     }
 
@@ -175,7 +207,7 @@ fn check(device: &Device, code: &Code, workgroup: [u32; 3]) -> Result<(), Error>
     Ok(())
 }
 
-fn build(device: &DeviceInner, code: &Code, values: &[u32]) -> Result<(vk::Pipeline, vk::PipelineLayout), Error> {
+fn build(device: &DeviceInner, code: &Code, values: &[u32]) -> Result<Pipeline, Error> {
     let (words, _) = code.words.as_chunks::<4>();
     let words: Vec<u32> = words.iter().map(|word| u32::from_le_bytes(*word)).collect();
     let module = vk::ShaderModuleCreateInfo::default().code(&words);
@@ -187,12 +219,7 @@ fn build(device: &DeviceInner, code: &Code, values: &[u32]) -> Result<(vk::Pipel
     device.note(made)
 }
 
-fn with_module(
-    device: &DeviceInner,
-    code: &Code,
-    values: &[u32],
-    module: vk::ShaderModule,
-) -> Result<(vk::Pipeline, vk::PipelineLayout), Error> {
+fn with_module(device: &DeviceInner, code: &Code, values: &[u32], module: vk::ShaderModule) -> Result<Pipeline, Error> {
     let ranges =
         [vk::PushConstantRange::default().stage_flags(vk::ShaderStageFlags::COMPUTE).size(code.argument_bytes)];
     let layout = vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&ranges);
@@ -222,7 +249,7 @@ fn with_module(
     // SAFETY: module, layout and cache are of this device and alive.
     let made = unsafe { device.raw.create_compute_pipelines(device.cache.raw, &[description], None) };
     match made {
-        Ok(pipelines) => Ok((pipelines[0], layout)),
+        Ok(pipelines) => Ok(Pipeline { raw: pipelines[0], layout }),
         Err((_, result)) => {
             // SAFETY: nothing was made with it.
             unsafe { device.raw.destroy_pipeline_layout(layout, None) };

@@ -172,6 +172,7 @@ impl<'e, 'o> Run<'e, 'o> {
         arguments: &[u8],
         uses: &[Use],
     ) -> Result<(), Stop> {
+        let pipeline = kernel.pipeline()?;
         let commands = self.order(uses)?;
         self.stamp(commands, name, false);
         let raw = &self.engine.submitter.device.raw;
@@ -179,8 +180,8 @@ impl<'e, 'o> Run<'e, 'o> {
         // SAFETY: the command buffer is being recorded; kernel and buffers are of this device and are kept until the
         // device is done; workgroups are within its limits, sizes from a buffer too as kernels fold them.
         unsafe {
-            raw.cmd_bind_pipeline(commands, vk::PipelineBindPoint::COMPUTE, kernel.pipeline);
-            raw.cmd_push_constants(commands, kernel.layout, compute, 0, arguments);
+            raw.cmd_bind_pipeline(commands, vk::PipelineBindPoint::COMPUTE, pipeline.raw);
+            raw.cmd_push_constants(commands, pipeline.layout, compute, 0, arguments);
             match groups {
                 Groups::Are([x, y, z]) => raw.cmd_dispatch(commands, *x, *y, *z),
                 Groups::In(groups) => raw.cmd_dispatch_indirect(commands, groups.buffer.memory.buffer, groups.start),

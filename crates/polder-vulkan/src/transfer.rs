@@ -1,12 +1,13 @@
 //! Uploads and downloads through memory that both sides reach.
 //!
 //! One thread copies a fifth of what the bus carries, so the host's part is done by all threads of rayon's pool, in
-//! pieces, and in turns on two staging buffers: while the device works on one, the host works on the other. Staging
+//! pieces, and in turns on some staging buffers: while the device works on one, the host works on another. Staging
 //! memory is dear to make and is kept.
 
 use crate::Error;
-use crate::buffer::View;
+use crate::buffer::{BufferInner, View};
 use crate::engine::Engine;
+use crate::host::{advised, bytes_of};
 use crate::memory::Allocated;
 use crate::run::host_reads;
 use crate::submit::{Slot, Used};
@@ -14,35 +15,110 @@ use ash::vk;
 use bytemuck::Pod;
 use gpu_allocator::MemoryLocation;
 use rayon::prelude::*;
+use std::collections::VecDeque;
+use std::mem::MaybeUninit;
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Bytes that go at once.
-const CHUNK: u64 = 32 << 20;
+/// The most and the least bytes that go at once; between them, an eighth of all that go.
+const MOST: usize = 16 << 20;
+const LEAST: usize = 1 << 20;
+/// So many chunks are on their way at once.
+const AHEAD: usize = 4;
 /// Bytes that one task of the pool copies.
 const PIECE: usize = 1 << 20;
 const TIMEOUT: Duration = Duration::from_secs(60);
 
-/// Two buffers each way, made when first needed.
+/// Buffers for each way, made when first needed.
 #[derive(Default)]
 pub(crate) struct Staging {
-    up: [Option<Allocated>; 2],
-    down: [Option<Allocated>; 2],
+    up: [Option<Allocated>; AHEAD],
+    down: [Option<Allocated>; AHEAD],
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Way {
-    Up,
-    Down,
+/// Bytes of the host that come from the device, or go there.
+enum Host<'a> {
+    From(&'a [u8]),
+    Into(&'a mut [MaybeUninit<u8>]),
+}
+
+/// What goes at once: bytes of the host, and where they are on the device.
+struct Chunk<'a> {
+    host: Host<'a>,
+    buffer: Arc<BufferInner>,
+    at: u64,
 }
 
 /// A chunk on its way.
-struct Flight {
+struct Flight<'a> {
     slot: Slot,
     value: u64,
-    half: usize,
-    start: usize,
-    bytes: usize,
+    place: usize,
+    chunk: Chunk<'a>,
+}
+
+/// Several downloads that go as one: [`Engine::fetch`].
+#[derive(Default)]
+pub struct Downloads<'a> {
+    parts: Vec<Part<'a>>,
+}
+
+struct Part<'a> {
+    buffer: Arc<BufferInner>,
+    start: u64,
+    into: Box<dyn Into + 'a>,
+}
+
+/// A vector of any type that is being filled.
+trait Into {
+    fn room(&mut self) -> &mut [MaybeUninit<u8>];
+
+    /// # Safety
+    ///
+    /// All of the room was written to.
+    unsafe fn filled(&mut self);
+}
+
+struct Filling<'a, T> {
+    vec: &'a mut Vec<T>,
+    len: usize,
+}
+
+impl<T: Pod> Into for Filling<'_, T> {
+    fn room(&mut self) -> &mut [MaybeUninit<u8>] {
+        bytes_of(&mut self.vec.spare_capacity_mut()[..self.len])
+    }
+
+    unsafe fn filled(&mut self) {
+        // SAFETY: the vector is empty, has room for so many, and they were written to, as the caller says.
+        unsafe { self.vec.set_len(self.len) };
+    }
+}
+
+impl std::fmt::Debug for Downloads<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Downloads({})", self.parts.len())
+    }
+}
+
+impl<'a> Downloads<'a> {
+    /// None yet.
+    pub fn new() -> Self {
+        Downloads::default()
+    }
+
+    /// One more: all elements of a view. What the vector holds is gone; its memory is used if there is room.
+    #[must_use]
+    pub fn and<T: Pod>(mut self, from: View<'_, T>, vec: &'a mut Vec<T>) -> Self {
+        vec.clear();
+        if vec.capacity() < from.len() {
+            *vec = Vec::new();
+            *vec = advised(from.len());
+        }
+        let into = Box::new(Filling { vec, len: from.len() });
+        self.parts.push(Part { buffer: Arc::clone(from.buffer), start: from.start, into });
+        self
+    }
 }
 
 impl Allocated {
@@ -56,148 +132,137 @@ impl Allocated {
     }
 }
 
-fn copy(to: &mut [u8], from: &[u8]) {
+fn copy(to: &mut [MaybeUninit<u8>], from: &[u8]) {
     if from.len() <= 2 * PIECE {
-        return to.copy_from_slice(from);
+        to.write_copy_of_slice(from);
+        return;
     }
-    to.par_chunks_mut(PIECE).zip(from.par_chunks(PIECE)).for_each(|(to, from)| to.copy_from_slice(from));
+    to.par_chunks_mut(PIECE).zip(from.par_chunks(PIECE)).for_each(|(to, from)| _ = to.write_copy_of_slice(from));
+}
+
+/// How many bytes go at once where so many go in all.
+fn chunk_size(bytes: usize) -> usize {
+    (bytes / 8).next_multiple_of(LEAST).clamp(LEAST, MOST)
 }
 
 impl Engine {
     /// Brings elements to the first of a view and waits until they are there.
     pub fn upload<T: Pod>(&mut self, to: View<'_, T>, data: &[T]) -> Result<(), Error> {
         let bytes: &[u8] = bytemuck::cast_slice(data);
-        self.fits("upload", to, data.len())?;
-        let mut flights: [Option<Flight>; 2] = [None, None];
-        let done = self.up(to, bytes, &mut flights);
-        self.land(Way::Up, to, flights, done, |_, _| {})
-    }
-
-    fn up<T: Pod>(&mut self, to: View<'_, T>, bytes: &[u8], flights: &mut [Option<Flight>; 2]) -> Result<(), Error> {
-        for (index, chunk) in bytes.chunks(CHUNK as usize).enumerate() {
-            let half = index % 2;
-            if let Some(flight) = &flights[half] {
-                self.submitter.wait(flight.value, TIMEOUT)?;
-            }
-            if let Some(flight) = flights[half].take() {
-                self.submitter.done(flight.slot);
-            }
-            self.stage(Way::Up, half, chunk.len() as u64)?;
-            let staged = self.staging.up[half].as_mut().and_then(Allocated::mapped_mut);
-            let staged = staged.and_then(|staged| staged.get_mut(..chunk.len())).ok_or_else(unmapped)?;
-            copy(staged, chunk);
-            flights[half] = Some(self.fly(Way::Up, half, to, index * CHUNK as usize, chunk.len())?);
-        }
-        Ok(())
+        self.fits("upload", to.buffer, data.len(), to.len())?;
+        let size = chunk_size(bytes.len());
+        self.transfer(bytes.chunks(size).enumerate().map(|(index, bytes)| Chunk {
+            host: Host::From(bytes),
+            buffer: Arc::clone(to.buffer),
+            at: to.start + (index * size) as u64,
+        }))
     }
 
     /// Fetches elements from the first of a view on.
     pub fn download<T: Pod>(&mut self, from: View<'_, T>, into: &mut [T]) -> Result<(), Error> {
-        self.fits("download", from, into.len())?;
-        let into: &mut [u8] = bytemuck::cast_slice_mut(into);
-        let mut flights: [Option<Flight>; 2] = [None, None];
-        let mut done = Ok(());
-        for (index, start) in (0..into.len()).step_by(CHUNK as usize).enumerate() {
-            let bytes = (into.len() - start).min(CHUNK as usize);
-            done = self.down(from, index % 2, start, bytes, &mut flights, into);
-            if done.is_err() {
-                break;
-            }
-        }
-        // The older one first.
-        let order = [flights[0].take(), flights[1].take()];
-        self.land(Way::Down, from, order, done, |staged, flight| {
-            copy(&mut into[flight.start..flight.start + flight.bytes], &staged[..flight.bytes]);
-        })
-    }
-
-    fn down<T: Pod>(
-        &mut self,
-        from: View<'_, T>,
-        half: usize,
-        start: usize,
-        bytes: usize,
-        flights: &mut [Option<Flight>; 2],
-        into: &mut [u8],
-    ) -> Result<(), Error> {
-        if let Some(flight) = &flights[half] {
-            self.submitter.wait(flight.value, TIMEOUT)?;
-            let staged = self.staging.down[half].as_ref().and_then(Allocated::mapped).ok_or_else(unmapped)?;
-            copy(&mut into[flight.start..flight.start + flight.bytes], &staged[..flight.bytes]);
-        }
-        if let Some(flight) = flights[half].take() {
-            self.submitter.done(flight.slot);
-        }
-        self.stage(Way::Down, half, bytes as u64)?;
-        flights[half] = Some(self.fly(Way::Down, half, from, start, bytes)?);
-        Ok(())
+        self.fits("download", from.buffer, into.len(), from.len())?;
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(into);
+        // SAFETY: the same memory for the same time, and `transfer` writes nothing to it that is not initialized.
+        let bytes = unsafe { std::slice::from_raw_parts_mut(bytes.as_mut_ptr().cast(), bytes.len()) };
+        let size = chunk_size(bytes.len());
+        self.transfer(landing(bytes, from.buffer, from.start, size))
     }
 
     /// All elements of a view.
     pub fn download_vec<T: Pod>(&mut self, from: View<'_, T>) -> Result<Vec<T>, Error> {
-        let mut data = vec![T::zeroed(); from.len()];
-        self.download(from, &mut data)?;
-        Ok(data)
+        let mut vec = Vec::new();
+        self.fetch(Downloads::new().and(from, &mut vec))?;
+        Ok(vec)
     }
 
-    fn fits<T: Pod>(&self, command: &'static str, view: View<'_, T>, len: usize) -> Result<(), Error> {
-        if !Arc::ptr_eq(&view.buffer.device, &self.submitter.device) {
-            return Err(Error::Recording { command, why: "the buffer is of another device".to_owned() });
+    /// Fetches all elements of some views into vectors, one behind the other without a break. After an error they are empty.
+    pub fn fetch(&mut self, downloads: Downloads<'_>) -> Result<(), Error> {
+        let mut parts = downloads.parts;
+        for part in &parts {
+            self.fits("download", &part.buffer, 0, 0)?;
         }
-        if len > view.len() {
-            return Err(Error::Recording { command, why: format!("{len} elements for a view of {}", view.len()) });
-        }
-        self.submitter.device.alive()
-    }
-
-    fn stage(&mut self, way: Way, half: usize, bytes: u64) -> Result<(), Error> {
-        let (place, name, usage, location) = match way {
-            Way::Up => {
-                (&mut self.staging.up[half], "upload", vk::BufferUsageFlags::TRANSFER_SRC, MemoryLocation::CpuToGpu)
-            }
-            Way::Down => {
-                (&mut self.staging.down[half], "download", vk::BufferUsageFlags::TRANSFER_DST, MemoryLocation::GpuToCpu)
-            }
-        };
-        if place.as_ref().is_none_or(|buffer| buffer.bytes < bytes) {
-            let bytes = bytes.next_power_of_two().clamp(1 << 16, CHUNK);
-            *place = None;
-            *place = Some(Allocated::new(&self.submitter.device, name, bytes, usage, location)?);
+        let size = chunk_size(parts.iter_mut().map(|part| part.into.room().len()).sum());
+        self.transfer(parts.iter_mut().flat_map(|part| landing(part.into.room(), &part.buffer, part.start, size)))?;
+        for part in &mut parts {
+            // SAFETY: the chunks above are all of its room, and all have arrived.
+            unsafe { part.into.filled() };
         }
         Ok(())
     }
 
-    /// Sends one chunk on its way between a half of the staging memory and byte `start` of the view.
-    fn fly<T: Pod>(
-        &mut self,
-        way: Way,
-        half: usize,
-        view: View<'_, T>,
-        start: usize,
-        bytes: usize,
-    ) -> Result<Flight, Error> {
-        let place = match way {
-            Way::Up => &self.staging.up[half],
-            Way::Down => &self.staging.down[half],
+    fn fits(&self, command: &'static str, buffer: &BufferInner, len: usize, room: usize) -> Result<(), Error> {
+        if !Arc::ptr_eq(&buffer.device, &self.submitter.device) {
+            return Err(Error::Recording { command, why: "the buffer is of another device".to_owned() });
+        }
+        if len > room {
+            return Err(Error::Recording { command, why: format!("{len} elements for a view of {room}") });
+        }
+        self.submitter.device.alive()
+    }
+
+    /// Sends chunks on their way, some at once, and waits until all have arrived.
+    fn transfer<'a>(&mut self, chunks: impl Iterator<Item = Chunk<'a>>) -> Result<(), Error> {
+        let mut flights = VecDeque::new();
+        let mut done = Ok(());
+        for (index, chunk) in chunks.enumerate() {
+            if flights.len() == AHEAD {
+                done = flights.pop_front().map_or(Ok(()), |flight| self.land(flight));
+            }
+            let flight = done.and_then(|()| self.fly(index % AHEAD, chunk));
+            done = flight.map(|flight| flights.push_back(flight));
+            if done.is_err() {
+                break;
+            }
+        }
+        for flight in flights {
+            let landed = self.land(flight);
+            done = done.and(landed);
+        }
+        done
+    }
+
+    fn staged(&mut self, host: &Host<'_>, place: usize) -> &mut Option<Allocated> {
+        match host {
+            Host::From(_) => &mut self.staging.up[place],
+            Host::Into(_) => &mut self.staging.down[place],
+        }
+    }
+
+    /// Sends one chunk on its way through one of the staging buffers, which nothing uses.
+    fn fly<'a>(&mut self, place: usize, chunk: Chunk<'a>) -> Result<Flight<'a>, Error> {
+        let (bytes, name, usage, location) = match &chunk.host {
+            Host::From(from) => (from.len(), "upload", vk::BufferUsageFlags::TRANSFER_SRC, MemoryLocation::CpuToGpu),
+            Host::Into(into) => (into.len(), "download", vk::BufferUsageFlags::TRANSFER_DST, MemoryLocation::GpuToCpu),
         };
-        let staged = place.as_ref().map(|staged| staged.buffer).ok_or_else(unmapped)?;
-        let (buffer, at) = (view.buffer.memory.buffer, view.start + start as u64);
+        let device = Arc::clone(&self.submitter.device);
+        let staged = self.staged(&chunk.host, place);
+        if staged.as_ref().is_none_or(|staged| staged.bytes < bytes as u64) {
+            let bytes = bytes.next_power_of_two().clamp(1 << 16, MOST) as u64;
+            *staged = None;
+            *staged = Some(Allocated::new(&device, name, bytes, usage, location)?);
+        }
+        let staged = staged.as_mut().ok_or_else(unmapped)?;
+        if let Host::From(from) = &chunk.host {
+            let into = staged.mapped_mut().and_then(|mapped| mapped.get_mut(..bytes)).ok_or_else(unmapped)?;
+            into.par_chunks_mut(PIECE).zip(from.par_chunks(PIECE)).for_each(|(to, from)| to.copy_from_slice(from));
+        }
+        let staged = staged.buffer;
         let slot = self.submitter.begin()?;
         let region = vk::BufferCopy::default().size(bytes as u64);
-        let raw = &self.submitter.device.raw;
         // SAFETY: the command buffer is being recorded; the range lies in the view and in the staging buffer, and both
         // are kept until the device is done (see `land`).
         unsafe {
-            match way {
-                Way::Up => raw.cmd_copy_buffer(slot.commands, staged, buffer, &[region.dst_offset(at)]),
-                Way::Down => {
-                    raw.cmd_copy_buffer(slot.commands, buffer, staged, &[region.src_offset(at)]);
+            let (raw, buffer) = (&device.raw, chunk.buffer.memory.buffer);
+            match &chunk.host {
+                Host::From(_) => raw.cmd_copy_buffer(slot.commands, staged, buffer, &[region.dst_offset(chunk.at)]),
+                Host::Into(_) => {
+                    raw.cmd_copy_buffer(slot.commands, buffer, staged, &[region.src_offset(chunk.at)]);
                     host_reads(raw, slot.commands);
                 }
             }
         }
         match self.submitter.submit(&slot) {
-            Ok(value) => Ok(Flight { slot, value, half, start, bytes }),
+            Ok(value) => Ok(Flight { slot, value, place, chunk }),
             Err(error) => {
                 self.submitter.done(slot);
                 Err(error)
@@ -205,38 +270,35 @@ impl Engine {
         }
     }
 
-    /// Waits for what is still on its way; what does not come in time is parked with its memory.
-    fn land<T: Pod>(
-        &mut self,
-        way: Way,
-        view: View<'_, T>,
-        flights: [Option<Flight>; 2],
-        mut done: Result<(), Error>,
-        mut arrived: impl FnMut(&[u8], &Flight),
-    ) -> Result<(), Error> {
-        for flight in flights.into_iter().flatten() {
-            let landed = self.submitter.wait(flight.value, TIMEOUT);
-            let place = match way {
-                Way::Up => &mut self.staging.up[flight.half],
-                Way::Down => &mut self.staging.down[flight.half],
-            };
-            match landed {
-                Ok(()) => {
-                    if let Some(staged) = place.as_ref().and_then(Allocated::mapped) {
-                        arrived(staged, &flight);
-                    }
-                    self.submitter.done(flight.slot);
-                }
-                Err(error) => {
-                    let staging = place.take().into_iter().collect();
-                    let used = Used { buffers: vec![Arc::clone(view.buffer)], staging, ..Used::default() };
-                    self.submitter.park(flight.slot, flight.value, used);
-                    done = done.and(Err(error));
-                }
-            }
+    /// Waits for a chunk; if it does not come in time it is parked with its memory.
+    fn land(&mut self, flight: Flight<'_>) -> Result<(), Error> {
+        let Flight { slot, value, place, chunk } = flight;
+        if let Err(error) = self.submitter.wait(value, TIMEOUT) {
+            let staging = self.staged(&chunk.host, place).take().into_iter().collect();
+            self.submitter.park(slot, value, Used { buffers: vec![chunk.buffer], staging, ..Used::default() });
+            return Err(error);
         }
-        done
+        self.submitter.done(slot);
+        if let Host::Into(into) = chunk.host {
+            let staged = self.staging.down[place].as_ref().and_then(Allocated::mapped);
+            copy(into, staged.and_then(|staged| staged.get(..into.len())).ok_or_else(unmapped)?);
+        }
+        Ok(())
     }
+}
+
+/// Where the bytes of a part of a buffer go, in chunks of some size.
+fn landing<'a>(
+    into: &'a mut [MaybeUninit<u8>],
+    buffer: &'a Arc<BufferInner>,
+    start: u64,
+    size: usize,
+) -> impl Iterator<Item = Chunk<'a>> {
+    into.chunks_mut(size).enumerate().map(move |(index, bytes)| Chunk {
+        host: Host::Into(bytes),
+        buffer: Arc::clone(buffer),
+        at: start + (index * size) as u64,
+    })
 }
 
 fn unmapped() -> Error {

@@ -78,14 +78,9 @@ impl Gpu {
     ///
     /// As [`Gpu::on`].
     pub fn with_arithmetic(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
-        Ok(Self {
-            device: device.clone(),
-            engine: Engine::new(device)?,
-            arithmetic,
-            pipeline: Pipeline::new(device, arithmetic)?,
-            input: None,
-            held: None,
-        })
+        let pipeline = Pipeline::new(device, arithmetic)?;
+        device.compile()?;
+        Ok(Self { device: device.clone(), engine: Engine::new(device)?, arithmetic, pipeline, input: None, held: None })
     }
 
     /// The device.
@@ -124,7 +119,11 @@ impl Gpu {
         input.resize(pslg.points().len())?;
         self.engine.upload(input.view(), pslg.points())?;
         watch.stage_on(Place::Transfer, "upload", [("bytes", 16 * pslg.points().len() as u64)]);
-        let made = self.timed(input.view(), options, watch).and_then(OnDevice::into_parts);
+        let made = std::thread::scope(|scope| {
+            let room = scope.spawn(|| result::room(pslg.points().len()));
+            let made = self.timed(input.view(), options, watch);
+            made.and_then(|made| made.into_parts(room.join().unwrap_or_default()))
+        });
         self.input = Some(input);
         let (triangulation, report) = made?;
         Ok(Output { triangulation, report })

@@ -3,9 +3,13 @@
 use super::held::{Found, Held};
 use crate::report::Place;
 use crate::{Error, Report, StageReport};
-use polder_mesh::{Chains, Parts, Triangulation};
-use polder_vulkan::{Engine, View};
+use polder_mesh::{Arrays, Chains, Parts, Triangulation};
+use polder_vulkan::{Downloads, Engine, View, room_for};
+use rayon::iter::{ParallelExtend, repeat_n};
 use std::time::Instant;
+
+/// From so many points on memory for the result is made while the device works.
+const LARGE: usize = 100_000;
 
 /// A triangulation in device memory, lent until the next call.
 ///
@@ -66,22 +70,45 @@ impl<'a> OnDevice<'a> {
     ///
     /// [`Error::DeviceLost`].
     pub fn fetch(&mut self) -> Result<Triangulation, Error> {
-        let (triangles, neighbors) = (self.triangles()?, self.neighbors()?);
-        let triangles = triangles.map(|view| self.engine.download_vec(view)).transpose()?.unwrap_or_default();
-        let neighbors = neighbors.map(|view| self.engine.download_vec(view)).transpose()?.unwrap_or_default();
-        let representatives = self.representatives().map(|view| self.engine.download_vec(view));
-        let representatives = representatives.transpose()?.unwrap_or_default();
-        let parts = Parts { representatives, chains: Chains::default() };
-        // No constraint, no constrained edge.
-        let constrained = vec![0; triangles.len()];
-        let made = Triangulation::from_canonical(triangles, neighbors, constrained, parts);
-        made.map_err(|error| Error::Internal { stage: "canonical_order", what: error.to_string() })
+        let mut into = Triangulation::default();
+        self.fetch_into(&mut into)?;
+        Ok(into)
     }
 
-    /// Fetches it; the report then has a line for that.
-    pub(super) fn into_parts(mut self) -> Result<(Triangulation, Report), Error> {
+    /// Fetches the triangulation into the memory of another one, which is no longer needed: fresh memory costs about as much
+    /// as bringing the bytes. After an error it is empty.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::DeviceLost`].
+    pub fn fetch_into(&mut self, into: &mut Triangulation) -> Result<(), Error> {
+        let Arrays { mut triangles, mut neighbors, mut constrained, mut parts } = std::mem::take(into).into_arrays();
+        let mut downloads = Downloads::new();
+        if let (Some(from), Some(across), Some(of)) = (self.triangles()?, self.neighbors()?, self.representatives()) {
+            downloads =
+                downloads.and(from, &mut triangles).and(across, &mut neighbors).and(of, &mut parts.representatives);
+        } else {
+            (triangles, neighbors, parts.representatives) = Default::default();
+        }
+        self.engine.fetch(downloads)?;
+        // No constraint, no constrained edge.
+        parts.chains = Chains::default();
+        constrained.clear();
+        constrained.par_extend(repeat_n(0, triangles.len()));
+        let made = Triangulation::from_canonical(triangles, neighbors, constrained, parts);
+        *into = made.map_err(|error| Error::Internal { stage: "canonical_order", what: error.to_string() })?;
+        Ok(())
+    }
+
+    /// Fetches it into some room; the report then has a line for that.
+    pub(super) fn into_parts(mut self, room: Triangulation) -> Result<(Triangulation, Report), Error> {
         self.started = Instant::now();
-        let triangulation = self.fetch()?;
+        let mut triangulation = room;
+        self.fetch_into(&mut triangulation)?;
+        // Two triangles a point were reckoned with; duplicates have none.
+        if triangulation.triangles().len() < triangulation.representatives().len() {
+            triangulation.shrink_to_fit();
+        }
         let bytes = 24 * triangulation.triangles().len() + 4 * triangulation.representatives().len();
         let seconds = self.started.elapsed().as_secs_f64();
         let mut report = self.report;
@@ -90,4 +117,14 @@ impl<'a> OnDevice<'a> {
         report.seconds += seconds;
         Ok((triangulation, report))
     }
+}
+
+/// An empty triangulation with room for one of so many points, which fetching need not wait for.
+pub(super) fn room(points: usize) -> Triangulation {
+    if points < LARGE {
+        return Triangulation::default();
+    }
+    let parts = Parts { representatives: room_for(points), chains: Chains::default() };
+    let made = Triangulation::from_canonical(room_for(2 * points), room_for(2 * points), room_for(2 * points), parts);
+    made.unwrap_or_default()
 }
