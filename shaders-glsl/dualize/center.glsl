@@ -23,12 +23,19 @@ uvec2 double_bits(int64_t units, int exponent) {
     return unpackUint2x32(bits) | uvec2(0u, units < 0 ? 0x80000000u : 0u);
 }
 
-// `pixel` is y << 16 | x, `half_side` half the side of a pixel in units.
-uvec4 center_of(uint pixel, int64_t translation_x, int64_t translation_y, int exponent, uint half_side) {
+// A grid of pixels, from its lower left corner: units of each axis, and half the sides of a pixel in them.
+struct Grid {
+    i64vec2 translation;
+    ivec2 exponents;
+    uvec2 half_sides;
+};
+
+// `pixel` is y << 16 | x.
+uvec4 center_of(uint pixel, Grid grid) {
     uvec2 odd = 2u * uvec2(pixel & 0xffffu, pixel >> 16) + 1u;
-    int64_t x = translation_x + int64_t(uint64_t(odd.x) * half_side);
-    int64_t y = translation_y + int64_t(uint64_t(odd.y) * half_side);
-    return uvec4(double_bits(x, exponent), double_bits(y, exponent));
+    int64_t x = grid.translation.x + int64_t(uint64_t(odd.x) * grid.half_sides.x);
+    int64_t y = grid.translation.y + int64_t(uint64_t(odd.y) * grid.half_sides.y);
+    return uvec4(double_bits(x, grid.exponents.x), double_bits(y, grid.exponents.y));
 }
 
 #endif

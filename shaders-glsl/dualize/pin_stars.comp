@@ -16,8 +16,10 @@ layout(push_constant, std430) uniform Args {
     WriteU32 rings; // STEPS words for each place: the neighbors in order
     int64_t translation_x;
     int64_t translation_y;
-    int exponent;
-    uint half_side;
+    int exponent_x;
+    int exponent_y;
+    uint half_side_x;
+    uint half_side_y;
     uint ring_limit; // places that there is room for
     uint round;
 };
@@ -31,7 +33,11 @@ bool is_fresh(uint word) {
 }
 
 uvec4 center(uint v) {
-    return center_of(pixels.at[v], translation_x, translation_y, exponent, half_side);
+    Grid grid;
+    grid.translation = i64vec2(translation_x, translation_y);
+    grid.exponents = ivec2(exponent_x, exponent_y);
+    grid.half_sides = uvec2(half_side_x, half_side_y);
+    return center_of(pixels.at[v], grid);
 }
 
 void pin_corner(uint v, uint spoke) {

@@ -10,15 +10,17 @@ layout(push_constant, std430) uniform Args {
     U32 bits; // zeros
     int64_t translation_x;
     int64_t translation_y;
-    int exponent;
-    uint side;
+    int exponent_x;
+    int exponent_y;
+    uint side_x;
+    uint side_y;
     uint width;
     uint height;
     uint count;
 };
 
 // floor(x / 2^exponent), saturated at 62 bits.
-int64_t floor_units(uint64_t bits) {
+int64_t floor_units(uint64_t bits, int exponent) {
     uint high = uint(bits >> 32);
     uint biased = high >> 20 & 0x7ffu;
     int64_t magnitude = int64_t(bits & 0xfffffffffffffUL);
@@ -34,8 +36,8 @@ int64_t floor_units(uint64_t bits) {
     return significand == 0 ? int64_t(0) : (significand < 0 ? -(int64_t(1) << 62) : int64_t(1) << 62);
 }
 
-uint column_or_row(uint64_t bits, int64_t translation, uint pixels_along) {
-    int64_t from_start = floor_units(bits) - translation;
+uint column_or_row(uint64_t bits, int64_t translation, int exponent, uint side, uint pixels_along) {
+    int64_t from_start = floor_units(bits, exponent) - translation;
     if (from_start < 0) {
         return 0u;
     }
@@ -52,8 +54,8 @@ void main() {
     if (point >= count) {
         return;
     }
-    uint x = column_or_row(points.at[2u * point], translation_x, width);
-    uint y = column_or_row(points.at[2u * point + 1u], translation_y, height);
+    uint x = column_or_row(points.at[2u * point], translation_x, exponent_x, side_x, width);
+    uint y = column_or_row(points.at[2u * point + 1u], translation_y, exponent_y, side_y, height);
     pixels.at[point] = y << 16 | x;
     uint word = y * pitch_of(width) + (x >> 5);
     uint bit = 1u << (x & 31u);

@@ -163,7 +163,9 @@ fn pin_stars() {
         let (entries, counts) =
             (device.gpu.buffer(&entries), device.gpu.buffer(&words(Word::PinCounts as usize, 0, list.len())));
         let rings = device.gpu.buffer(&vec![7_u32; 8 * list.len().max(1)]);
-        let [translation_x, translation_y] = case.mapping.translation();
+        let ([translation_x, translation_y], [exponent_x, exponent_y]) =
+            (case.mapping.translation(), case.mapping.exponents());
+        let [half_side_x, half_side_y] = case.mapping.sides().map(|side| side / 2);
         let arguments = PinStarsArgs {
             triangles: held.mesh.corners(),
             links: held.mesh.twins(),
@@ -174,8 +176,10 @@ fn pin_stars() {
             pixels: pixels.view().cast(),
             translation_x,
             translation_y,
-            exponent: case.mapping.exponent(),
-            half_side: case.mapping.side() / 2,
+            exponent_x,
+            exponent_y,
+            half_side_x,
+            half_side_y,
             rings: rings.view(),
             ring_limit: list.len() as u32,
             round: 0,

@@ -67,6 +67,7 @@ fn map_points() {
         for (name, points, mapping) in mapped() {
             let [width, height] = mapping.size();
             let [translation_x, translation_y] = mapping.translation();
+            let ([exponent_x, exponent_y], [side_x, side_y]) = (mapping.exponents(), mapping.sides());
             let bits = gpu.buffer(&vec![0_u32; (width.div_ceil(32) * height) as usize]);
             // Also points outside of the grid.
             for scale in [1.0, -3.0, 1e300, 1e-300] {
@@ -79,8 +80,10 @@ fn map_points() {
                     bits: bits.view(),
                     translation_x,
                     translation_y,
-                    exponent: mapping.exponent(),
-                    side: mapping.side(),
+                    exponent_x,
+                    exponent_y,
+                    side_x,
+                    side_y,
                     width,
                     height,
                     count: points.len() as u32,

@@ -883,9 +883,13 @@ pub struct PinStarsArgs<'a> {
     /// a value
     pub translation_y: i64,
     /// a value
-    pub exponent: i32,
+    pub exponent_x: i32,
     /// a value
-    pub half_side: u32,
+    pub exponent_y: i32,
+    /// a value
+    pub half_side_x: u32,
+    /// a value
+    pub half_side_y: u32,
     /// a value
     pub ring_limit: u32,
     /// a value
@@ -899,7 +903,7 @@ impl Shader for PinStars {
         name: "pin_stars",
         words: include_spirv!("../spv/pin_stars.spv"),
         without_float64: Some(include_spirv!("../spv/pin_stars.integers.spv")),
-        argument_bytes: 96,
+        argument_bytes: 104,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -923,7 +927,7 @@ impl Shader for PinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "b9e21798a5069c816f72d616ff8c129966479f09cccba34df8b4c8322d19c02c",
+        source_hash: "fdcd366b19fc5696d2d8d5485235a3a444751bf749aaeadd3bd452a2d6e97b78",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -938,10 +942,12 @@ impl Shader for PinStars {
         encoder.buffer(56, args.rings);
         encoder.value(64, args.translation_x);
         encoder.value(72, args.translation_y);
-        encoder.value(80, args.exponent);
-        encoder.value(84, args.half_side);
-        encoder.value(88, args.ring_limit);
-        encoder.value(92, args.round);
+        encoder.value(80, args.exponent_x);
+        encoder.value(84, args.exponent_y);
+        encoder.value(88, args.half_side_x);
+        encoder.value(92, args.half_side_y);
+        encoder.value(96, args.ring_limit);
+        encoder.value(100, args.round);
     }
 }
 

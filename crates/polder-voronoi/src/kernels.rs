@@ -625,9 +625,13 @@ pub struct MapPointsArgs<'a> {
     /// a value
     pub translation_y: i64,
     /// a value
-    pub exponent: i32,
+    pub exponent_x: i32,
     /// a value
-    pub side: u32,
+    pub exponent_y: i32,
+    /// a value
+    pub side_x: u32,
+    /// a value
+    pub side_y: u32,
     /// a value
     pub width: u32,
     /// a value
@@ -643,7 +647,7 @@ impl Shader for MapPoints {
         name: "map_points",
         words: include_spirv!("../spv/map_points.spv"),
         without_float64: None,
-        argument_bytes: 60,
+        argument_bytes: 68,
         buffers: &[
             BufferArgument { name: "points", offset: 0, access: Access::Read },
             BufferArgument { name: "pixels", offset: 8, access: Access::Write },
@@ -652,7 +656,7 @@ impl Shader for MapPoints {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "ad21731c87f7cd0543be94f1c0795a7bc554d38006c08c4ac09120c37f44d8f9",
+        source_hash: "d0278622ad856c56b99b38be9fc5a11fa6f75ff4a69ebe3cafea485cca82ab1a",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -662,11 +666,13 @@ impl Shader for MapPoints {
         encoder.buffer(16, args.bits);
         encoder.value(24, args.translation_x);
         encoder.value(32, args.translation_y);
-        encoder.value(40, args.exponent);
-        encoder.value(44, args.side);
-        encoder.value(48, args.width);
-        encoder.value(52, args.height);
-        encoder.value(56, args.count);
+        encoder.value(40, args.exponent_x);
+        encoder.value(44, args.exponent_y);
+        encoder.value(48, args.side_x);
+        encoder.value(52, args.side_y);
+        encoder.value(56, args.width);
+        encoder.value(60, args.height);
+        encoder.value(64, args.count);
     }
 }
 

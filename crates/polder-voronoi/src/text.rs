@@ -63,8 +63,13 @@ impl fmt::Display for Letters<'_> {
 impl fmt::Display for GridMapping {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let ([width, height], [x, y]) = (self.size(), self.translation());
-        let (side, exponent) = (self.side(), self.exponent());
-        write!(f, "{width} x {height} pixels of side {side} * 2^{exponent}, from ({x}, {y}) * 2^{exponent}")
+        let ([side, high], [exponent, exponent_y]) = (self.sides(), self.exponents());
+        if self.is_square() {
+            write!(f, "{width} x {height} pixels of side {side} * 2^{exponent}, from ({x}, {y}) * 2^{exponent}")
+        } else {
+            write!(f, "{width} x {height} pixels, {side} * 2^{exponent} wide and {high} * 2^{exponent_y} high, ")?;
+            write!(f, "from ({x} * 2^{exponent}, {y} * 2^{exponent_y})")
+        }
     }
 }
 

@@ -204,6 +204,8 @@ impl Stage {
         };
         recording.dispatch(&self.pin_triangles, self.groups, &arguments);
         let [translation_x, translation_y] = input.mapping.translation();
+        let [exponent_x, exponent_y] = input.mapping.exponents();
+        let [half_side_x, half_side_y] = input.mapping.sides().map(|side| side / 2);
         let bound = buffers.sites as u32;
         recording.repeat_ahead("pinning", buffers.word(Word::PinLeft)?, bound, 1, 2, |body| {
             for round in 0..PIN_ROUNDS {
@@ -217,8 +219,10 @@ impl Stage {
                     pixels: input.pixels.cast(),
                     translation_x,
                     translation_y,
-                    exponent: input.mapping.exponent(),
-                    half_side: input.mapping.side() / 2,
+                    exponent_x,
+                    exponent_y,
+                    half_side_x,
+                    half_side_y,
                     rings: buffers.edge_of.view(),
                     ring_limit: buffers.rings(),
                     round,

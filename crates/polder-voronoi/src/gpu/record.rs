@@ -68,14 +68,17 @@ impl Stage {
         recording.fill(lost, 0);
         recording.fill(order, NONE);
         let [translation_x, translation_y] = mapping.translation();
+        let ([exponent_x, exponent_y], [side_x, side_y]) = (mapping.exponents(), mapping.sides());
         let arguments = MapPointsArgs {
             points: points.cast::<u64>(),
             pixels,
             bits,
             translation_x,
             translation_y,
-            exponent: mapping.exponent(),
-            side: mapping.side(),
+            exponent_x,
+            exponent_y,
+            side_x,
+            side_y,
             width,
             height,
             count: limit,

@@ -54,6 +54,8 @@ struct Axis {
     high: f64,
     pixels: u32,
     translation: i64,
+    unit: RBig,
+    side: RBig,
 }
 
 fn axes(mapping: &GridMapping, points: &[DVec2]) -> [Axis; 2] {
@@ -62,22 +64,22 @@ fn axes(mapping: &GridMapping, points: &[DVec2]) -> [Axis; 2] {
         high: points.iter().map(|p| p[k]).fold(f64::NEG_INFINITY, f64::max),
         pixels: mapping.size()[k],
         translation: mapping.translation()[k],
+        unit: two_to(mapping.exponents()[k]),
+        side: two_to(mapping.exponents()[k]) * RBig::from(mapping.sides()[k]),
     })
 }
 
 /// Everything that a mapping promises.
 fn assert_exact(points: &[DVec2], options: &Options) {
     let mapping = GridMapping::fit(points, options).unwrap();
-    let unit = two_to(mapping.exponent());
-    let side = &unit * RBig::from(mapping.side());
-    assert!(mapping.side() > 0 && mapping.side().is_multiple_of(2) && mapping.side() <= 1 << 20);
+    assert!(mapping.sides().iter().all(|&side| side > 0 && side.is_multiple_of(2) && side <= 1 << 20));
     let limit = match options.resolution {
         Resolution::LongerSide(side) => side,
         _ => MAX_SIDE,
     };
     for (k, axis) in axes(&mapping, points).iter().enumerate() {
         assert!((1..=limit).contains(&axis.pixels));
-        let start = &unit * RBig::from(axis.translation);
+        let (side, start) = (&axis.side, &axis.unit * RBig::from(axis.translation));
         let in_grid = |pixel: u32| if k == 0 { [pixel, 0] } else { [0, pixel] };
 
         // Centers: exact, inside the box, and mapped back to their pixel.
@@ -85,7 +87,7 @@ fn assert_exact(points: &[DVec2], options: &Options) {
             let center = mapping.center(in_grid(pixel));
             assert!(center.is_finite());
             let half = RBig::from(2 * pixel + 1) / RBig::from(2);
-            assert_eq!(exact(center[k]), &start + &side * half);
+            assert_eq!(exact(center[k]), &start + side * half);
             assert_eq!(mapping.pixel(center)[k], pixel);
             assert!(mapping.center_units(in_grid(pixel))[k].unsigned_abs() <= 1 << 53);
             if axis.pixels > 1 {
@@ -98,7 +100,7 @@ fn assert_exact(points: &[DVec2], options: &Options) {
         for &point in points {
             let pixel = mapping.pixel(point)[k];
             if axis.pixels > 1 {
-                let quotient = (exact(point[k]) - &start) / &side;
+                let quotient = (exact(point[k]) - &start) / side;
                 assert!(quotient >= RBig::ZERO);
                 assert!(quotient < RBig::from(axis.pixels) + RBig::ONE / RBig::from(2));
                 assert_eq!(IBig::from(pixel), quotient.floor().min(IBig::from(axis.pixels - 1)));
@@ -140,9 +142,9 @@ proptest! {
         assert_exact(&points, &Resolution::LongerSide(100).into());
     }
 
-    /// The grid is as large as asked for, unless the coordinates are too coarse.
+    /// The grid is as large as asked for, unless the coordinates are too coarse or the box is thin.
     #[test]
-    fn mapping_is_as_fine_as_asked(shape in 0.001..1.0_f64, count in 50_usize..2000, per_point in 1.0..20.0_f64, seed: u64) {
+    fn mapping_is_as_fine_as_asked(shape in 0.15..1.0_f64, count in 50_usize..2000, per_point in 1.0..20.0_f64, seed: u64) {
         let mut random = Random(seed);
         let mut points: Vec<DVec2> =
             (0..count).map(|_| DVec2::new(random.unit(), shape * random.unit()) * 1e-9).collect();
@@ -153,6 +155,47 @@ proptest! {
         let slack = 1.0 + 2.0 / f64::from(mapping.height());
         prop_assert!(area < wish * slack && area > wish / slack - 2.0 * f64::from(mapping.width()), "{area} for {wish}");
     }
+}
+
+proptest! {
+    /// Thin boxes, lying and standing, from any place: rows are not fewer than 32, and columns as many as the points ask for.
+    #[test]
+    fn mapping_of_thin_boxes_is_exact_and_has_rows(
+        thin in 0..1000_i32, tall: bool, count in 40_usize..200, from in [-1e3..1e3, -1e3..1e3], seed: u64
+    ) {
+        let mut random = Random(seed);
+        let [long, short] = from;
+        let flat = 2.0_f64.powi(-6 - thin);
+        let mut points: Vec<DVec2> =
+            (0..count).map(|_| DVec2::new(long + random.unit(), short * flat + flat * random.unit())).collect();
+        points[..2].copy_from_slice(&[DVec2::new(long, short * flat), DVec2::new(long + 1.0, (short + 1.0) * flat)]);
+        if tall {
+            points.iter_mut().for_each(|p| *p = DVec2::new(-p.y, p.x));
+        }
+        assert_exact(&points, &Options::default());
+        assert_exact(&points, &Resolution::LongerSide(100).into());
+        let mapping = GridMapping::fit(&points, &Options::default()).unwrap();
+        let [width, height] = mapping.size();
+        let (along, across) = if tall { (height, width) } else { (width, height) };
+        let ideal = (7.0 * count as f64 / flat).sqrt().min(7.0 * count as f64);
+        prop_assert!((f64::from(along) - ideal).abs() < 2.0, "{along} along, {ideal}");
+        let most = (along / 8).min(32);
+        prop_assert!(across <= most && across + 1 >= most, "{along} x {across}");
+        prop_assert!(!mapping.is_square());
+        prop_assert!(GridMapping::fit(&points, &Resolution::LongerSide(100).into()).unwrap().is_square());
+    }
+}
+
+/// Where the grid cannot be as long as it would have to be, rows stay as low as they would be.
+#[test]
+fn a_side_cut_short_does_not_make_the_other_coarser() {
+    let corners = [DVec2::ZERO, DVec2::new(1.0, 1e-3)];
+    let bounds = polder_voronoi::Bounds::of(&corners).unwrap();
+    // 7 million pixels: 83666 x 83 square ones.
+    let mapping = GridMapping::fit_bounds(&bounds, 1_000_000, &Options::default()).unwrap();
+    assert_eq!(mapping.size(), [MAX_SIDE, 83]);
+    let square = GridMapping::fit_bounds(&bounds, 150_000, &Options::default()).unwrap();
+    assert_eq!((square.size(), square.is_square()), ([32403, 32], true));
 }
 
 #[test]
@@ -207,7 +250,7 @@ mod where_division_fails {
     fn subnormal_ranges_have_a_scale() {
         let points = [DVec2::ZERO, DVec2::splat(5e-324 * 7.0)];
         let mapping = GridMapping::fit(&points, &Resolution::LongerSide(1000).into()).unwrap();
-        assert_eq!((mapping.size(), mapping.side()), ([4, 4], 2));
+        assert_eq!((mapping.size(), mapping.sides()), ([4, 4], [2, 2]));
         assert_exact(&points, &Options::default());
     }
 
@@ -217,9 +260,9 @@ mod where_division_fails {
         for &(low, high, side) in &[(0.0, 1.0, 10), (0.1, 0.7, 3), (-1.0 / 3.0, 1e3, 7)] {
             let corners = [DVec2::splat(low), DVec2::splat(high)];
             let mapping = GridMapping::fit(&corners, &Resolution::LongerSide(side).into()).unwrap();
-            let unit = 2.0_f64.powi(mapping.exponent());
+            let unit = 2.0_f64.powi(mapping.exponents()[0]);
             for column in 1..mapping.width() {
-                let units = mapping.translation()[0] + i64::from(mapping.side()) * i64::from(column);
+                let units = mapping.translation()[0] + i64::from(mapping.sides()[0]) * i64::from(column);
                 let border = DVec2::splat(units as f64 * unit);
                 let below = DVec2::splat(border.x.next_down());
                 assert_eq!([mapping.pixel(below)[0], mapping.pixel(border)[0]], [column - 1, column]);
@@ -233,8 +276,8 @@ mod where_division_fails {
 fn rounding_division_finds_other_pixels() {
     let corners = [DVec2::splat(-0.9), DVec2::splat(0.1)];
     let mapping = GridMapping::fit(&corners, &Resolution::LongerSide(1000).into()).unwrap();
-    let unit = 2.0_f64.powi(mapping.exponent());
-    let (scale, translation) = (f64::from(mapping.side()) * unit, mapping.translation()[0] as f64 * unit);
+    let unit = 2.0_f64.powi(mapping.exponents()[0]);
+    let (scale, translation) = (f64::from(mapping.sides()[0]) * unit, mapping.translation()[0] as f64 * unit);
     let differs = |column: &u32| {
         let border = translation + f64::from(*column) * scale;
         let below = border.next_down();
