@@ -15,6 +15,7 @@
 #ifndef STEPS_GLSL
 #define STEPS_GLSL
 
+#include "edge_to.glsl"
 #include "mesh.glsl"
 #include "predicates.glsl"
 
@@ -79,9 +80,9 @@ uint advance(inout Walker walker, ReadU32 triangles, ReadU32 links, ReadPoints p
     uint h = walker.h;
     if (walker.state == CROSSING) {
         h = twin(links, h);
-        if (h == HALF_EDGE) {
-            return LOST;
-        }
+    }
+    if (h >= HALF_EDGE) {
+        return LOST;
     }
     uint w = walker.state == AT_SPOKE ? destination(triangles, h) : apex(triangles, h);
     int side = NO_SIDE;
@@ -119,23 +120,6 @@ uint advance(inout Walker walker, ReadU32 triangles, ReadU32 links, ReadPoints p
         return ALONG;
     }
     return TURNS;
-}
-
-// The half-edge to a vertex among those that leave the origin of `spoke`, or NONE. `most` bounds the turn.
-uint edge_to(uint spoke, uint to, uint most, ReadU32 triangles, ReadU32 links) {
-    uint h = spoke;
-    uint w = destination(triangles, h);
-    for (uint turn = 0u; turn < most; turn++) {
-        if (w == to) {
-            return h;
-        }
-        w = apex(triangles, h);
-        h = rotate_ccw(links, h);
-        if (h == spoke || h == HALF_EDGE) {
-            break;
-        }
-    }
-    return NONE;
 }
 
 #endif

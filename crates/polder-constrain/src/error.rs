@@ -59,6 +59,20 @@ pub enum ConstrainError {
         /// Where the walk came from and went to.
         ends: [u32; 2],
     },
+    /// The same on a device, which knows the constraint.
+    #[error("constraint {constraint}: its walk lost its way: the mesh is not a triangulation of a convex hull")]
+    WalkLost {
+        /// The lowest constraint that was lost.
+        constraint: u32,
+    },
+    /// On a device, constraints met more vertices between their ends than there is room for.
+    #[error("constraints meet {needed} vertices between their ends; there is room for {room}")]
+    TooManyStops {
+        /// Room for so many would do.
+        needed: u32,
+        /// Room that there was.
+        room: u32,
+    },
     /// The bound on rounds was reached, or a round changed nothing: the mesh was not a triangulation.
     #[error("constrain: {remaining} sub-constraints are still missing after {rounds} rounds")]
     BoundExceeded {

@@ -2,6 +2,76 @@
 
 use polder_vulkan::{Access, BufferArgument, Code, Constant, Encoder, Shader, Side, View, include_spirv};
 
+/// Which constraints are edges: found by the numbers of vertices alone. The others are listed. A walk begins at the end with
+/// fewer edges, of two like ones at the first.
+#[derive(Debug, Clone, Copy)]
+pub enum FindEdges {}
+
+/// Arguments of [`FindEdges`].
+#[derive(Debug, Clone, Copy)]
+pub struct FindEdgesArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub links: View<'a, u32>,
+    /// read
+    pub ends: View<'a, [u32; 2]>,
+    /// read
+    pub spokes: View<'a, u32>,
+    /// read
+    pub degrees: View<'a, u32>,
+    /// written
+    pub met: View<'a, u32>,
+    /// written
+    pub lengths: View<'a, u32>,
+    /// written
+    pub list: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub constraints: u32,
+}
+
+impl Shader for FindEdges {
+    type Args<'a> = FindEdgesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "find_edges",
+        words: include_spirv!("../spv/find_edges.spv"),
+        without_float64: None,
+        argument_bytes: 76,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
+            BufferArgument { name: "ends", offset: 16, access: Access::Read },
+            BufferArgument { name: "spokes", offset: 24, access: Access::Read },
+            BufferArgument { name: "degrees", offset: 32, access: Access::Read },
+            BufferArgument { name: "met", offset: 40, access: Access::Write },
+            BufferArgument { name: "lengths", offset: 48, access: Access::Write },
+            BufferArgument { name: "list", offset: 56, access: Access::Write },
+            BufferArgument { name: "words", offset: 64, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "6b02370be531bc77a54ba5f415b0dad8d70b1899af1cfaa5a04126d95c81f38b",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.ends);
+        encoder.buffer(24, args.spokes);
+        encoder.buffer(32, args.degrees);
+        encoder.buffer(40, args.met);
+        encoder.buffer(48, args.lengths);
+        encoder.buffer(56, args.list);
+        encoder.buffer(64, args.words);
+        encoder.value(72, args.constraints);
+    }
+}
+
 /// For every vertex a half-edge that leaves it, and how many do. Which half-edge it is depends on the order in which
 /// invocations come; what is made of it may not.
 #[derive(Debug, Clone, Copy)]
@@ -52,5 +122,467 @@ impl Shader for FindSpokes {
         encoder.buffer(24, args.degrees);
         encoder.value(32, args.limit);
         encoder.value(36, args.vertices);
+    }
+}
+
+/// The sub-constraints: from each vertex of a chain to the next, the lower one first. A chain has one fewer than vertices.
+#[derive(Debug, Clone, Copy)]
+pub enum ListSubConstraints {}
+
+/// Arguments of [`ListSubConstraints`].
+#[derive(Debug, Clone, Copy)]
+pub struct ListSubConstraintsArgs<'a> {
+    /// read
+    pub met: View<'a, u32>,
+    /// read
+    pub offsets: View<'a, u32>,
+    /// read and written
+    pub pieces: View<'a, [u32; 4]>,
+    /// read
+    pub before: View<'a, u32>,
+    /// read
+    pub stops: View<'a, u32>,
+    /// read
+    pub words: View<'a, u32>,
+    /// read
+    pub chains: View<'a, u32>,
+    /// written
+    pub sub_constraints: View<'a, [u32; 2]>,
+    /// a value
+    pub constraints: u32,
+    /// a value
+    pub stop_limit: u32,
+}
+
+impl Shader for ListSubConstraints {
+    type Args<'a> = ListSubConstraintsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "list_sub_constraints",
+        words: include_spirv!("../spv/list_sub_constraints.spv"),
+        without_float64: None,
+        argument_bytes: 72,
+        buffers: &[
+            BufferArgument { name: "met", offset: 0, access: Access::Read },
+            BufferArgument { name: "offsets", offset: 8, access: Access::Read },
+            BufferArgument { name: "pieces", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "before", offset: 24, access: Access::Read },
+            BufferArgument { name: "stops", offset: 32, access: Access::Read },
+            BufferArgument { name: "words", offset: 40, access: Access::Read },
+            BufferArgument { name: "chains", offset: 48, access: Access::Read },
+            BufferArgument { name: "sub_constraints", offset: 56, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "98dcf162be5fea54c97565198d2b824ee7c36047fdf0a25e0e0edf78c3831267",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.met);
+        encoder.buffer(8, args.offsets);
+        encoder.buffer(16, args.pieces);
+        encoder.buffer(24, args.before);
+        encoder.buffer(32, args.stops);
+        encoder.buffer(40, args.words);
+        encoder.buffer(48, args.chains);
+        encoder.buffer(56, args.sub_constraints);
+        encoder.value(64, args.constraints);
+        encoder.value(68, args.stop_limit);
+    }
+}
+
+/// Names, 2 of 2: the ends of the constraints as vertices.
+#[derive(Debug, Clone, Copy)]
+pub enum NameEnds {}
+
+/// Arguments of [`NameEnds`].
+#[derive(Debug, Clone, Copy)]
+pub struct NameEndsArgs<'a> {
+    /// read
+    pub vertices: View<'a, u32>,
+    /// read
+    pub constraints: View<'a, [u32; 2]>,
+    /// written
+    pub ends: View<'a, [u32; 2]>,
+    /// a value
+    pub count: u32,
+    /// a value
+    pub points: u32,
+}
+
+impl Shader for NameEnds {
+    type Args<'a> = NameEndsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "name_ends",
+        words: include_spirv!("../spv/name_ends.spv"),
+        without_float64: None,
+        argument_bytes: 32,
+        buffers: &[
+            BufferArgument { name: "vertices", offset: 0, access: Access::Read },
+            BufferArgument { name: "constraints", offset: 8, access: Access::Read },
+            BufferArgument { name: "ends", offset: 16, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "a03b4c1388264cff662eaa17ddd99a64a3be15a369307975f81923b30aba21dc",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.vertices);
+        encoder.buffer(8, args.constraints);
+        encoder.buffer(16, args.ends);
+        encoder.value(24, args.count);
+        encoder.value(28, args.points);
+    }
+}
+
+/// Names, 1 of 2: for each point of the input the vertex that it is or equals.
+#[derive(Debug, Clone, Copy)]
+pub enum NamePoints {}
+
+/// Arguments of [`NamePoints`].
+#[derive(Debug, Clone, Copy)]
+pub struct NamePointsArgs<'a> {
+    /// read
+    pub order: View<'a, u32>,
+    /// read
+    pub vertex_of: View<'a, u32>,
+    /// written
+    pub vertices: View<'a, u32>,
+    /// a value
+    pub count: u32,
+}
+
+impl Shader for NamePoints {
+    type Args<'a> = NamePointsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "name_points",
+        words: include_spirv!("../spv/name_points.spv"),
+        without_float64: None,
+        argument_bytes: 28,
+        buffers: &[
+            BufferArgument { name: "order", offset: 0, access: Access::Read },
+            BufferArgument { name: "vertex_of", offset: 8, access: Access::Read },
+            BufferArgument { name: "vertices", offset: 16, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "9e3c5134b3488de3217505ce4d6361c75363f3d4dce9ccb6f12e7ee9eda8c7e4",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.order);
+        encoder.buffer(8, args.vertex_of);
+        encoder.buffer(16, args.vertices);
+        encoder.value(24, args.count);
+    }
+}
+
+/// Puts the ends of the constraints, and the vertices they met, where they belong in the chains; nothing if the walks were not
+/// whole.
+#[derive(Debug, Clone, Copy)]
+pub enum PlaceChains {}
+
+/// Arguments of [`PlaceChains`].
+#[derive(Debug, Clone, Copy)]
+pub struct PlaceChainsArgs<'a> {
+    /// read
+    pub ends: View<'a, [u32; 2]>,
+    /// read
+    pub met: View<'a, u32>,
+    /// read
+    pub offsets: View<'a, u32>,
+    /// read and written
+    pub pieces: View<'a, [u32; 4]>,
+    /// read
+    pub before: View<'a, u32>,
+    /// read
+    pub stops: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// written
+    pub chains: View<'a, u32>,
+    /// a value
+    pub constraints: u32,
+    /// a value
+    pub stop_limit: u32,
+}
+
+impl Shader for PlaceChains {
+    type Args<'a> = PlaceChainsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "place_chains",
+        words: include_spirv!("../spv/place_chains.spv"),
+        without_float64: None,
+        argument_bytes: 72,
+        buffers: &[
+            BufferArgument { name: "ends", offset: 0, access: Access::Read },
+            BufferArgument { name: "met", offset: 8, access: Access::Read },
+            BufferArgument { name: "offsets", offset: 16, access: Access::Read },
+            BufferArgument { name: "pieces", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "before", offset: 32, access: Access::Read },
+            BufferArgument { name: "stops", offset: 40, access: Access::Read },
+            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "chains", offset: 56, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "40f3c537ffc24ee94dcd8d5100bfdcf8fbd3b78f6c550e011425821e6d50c240",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.ends);
+        encoder.buffer(8, args.met);
+        encoder.buffer(16, args.offsets);
+        encoder.buffer(24, args.pieces);
+        encoder.buffer(32, args.before);
+        encoder.buffer(40, args.stops);
+        encoder.buffer(48, args.words);
+        encoder.buffer(56, args.chains);
+        encoder.value(64, args.constraints);
+        encoder.value(68, args.stop_limit);
+    }
+}
+
+/// Chains in other names.
+#[derive(Debug, Clone, Copy)]
+pub enum RenameChains {}
+
+/// Arguments of [`RenameChains`].
+#[derive(Debug, Clone, Copy)]
+pub struct RenameChainsArgs<'a> {
+    /// read
+    pub words: View<'a, u32>,
+    /// read
+    pub names: View<'a, u32>,
+    /// read and written
+    pub chains: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub vertices: u32,
+}
+
+impl Shader for RenameChains {
+    type Args<'a> = RenameChainsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "rename_chains",
+        words: include_spirv!("../spv/rename_chains.spv"),
+        without_float64: None,
+        argument_bytes: 32,
+        buffers: &[
+            BufferArgument { name: "words", offset: 0, access: Access::Read },
+            BufferArgument { name: "names", offset: 8, access: Access::Read },
+            BufferArgument { name: "chains", offset: 16, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "09fb834dd65dee5c0a689776e18ef296974b982250945fe6dfb6c4e89781234f",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.words);
+        encoder.buffer(8, args.names);
+        encoder.buffer(16, args.chains);
+        encoder.value(24, args.limit);
+        encoder.value(28, args.vertices);
+    }
+}
+
+/// Later pieces that turned out to be superfluous met nothing; what the others met belongs to the chain of their constraint.
+#[derive(Debug, Clone, Copy)]
+pub enum TrimPieces {}
+
+/// Arguments of [`TrimPieces`].
+#[derive(Debug, Clone, Copy)]
+pub struct TrimPiecesArgs<'a> {
+    /// read and written
+    pub pieces: View<'a, [u32; 4]>,
+    /// read and written
+    pub piece_met: View<'a, u32>,
+    /// read and written
+    pub lengths: View<'a, u32>,
+    /// read
+    pub words: View<'a, u32>,
+    /// a value
+    pub piece_limit: u32,
+}
+
+impl Shader for TrimPieces {
+    type Args<'a> = TrimPiecesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "trim_pieces",
+        words: include_spirv!("../spv/trim_pieces.spv"),
+        without_float64: None,
+        argument_bytes: 36,
+        buffers: &[
+            BufferArgument { name: "pieces", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "piece_met", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "lengths", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 24, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "db9a1548b0cc939f2a4fc06f491e2144694cb2022ff232b277852eff15b31d3d",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.pieces);
+        encoder.buffer(8, args.piece_met);
+        encoder.buffer(16, args.lengths);
+        encoder.buffer(24, args.words);
+        encoder.value(32, args.piece_limit);
+    }
+}
+
+/// The constraints walk the mesh, and meet the vertices at which they are cut.
+#[derive(Debug, Clone, Copy)]
+pub enum WalkConstraints {}
+
+/// Arguments of [`WalkConstraints`].
+#[derive(Debug, Clone, Copy)]
+pub struct WalkConstraintsArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub ends: View<'a, [u32; 2]>,
+    /// read
+    pub spokes: View<'a, u32>,
+    /// read and written
+    pub met: View<'a, u32>,
+    /// read and written
+    pub lengths: View<'a, u32>,
+    /// read
+    pub runs: View<'a, u32>,
+    /// read and written
+    pub pieces: View<'a, [u32; 4]>,
+    /// read and written
+    pub piece_met: View<'a, u32>,
+    /// written
+    pub stops: View<'a, u32>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub constraints: u32,
+    /// a value
+    pub piece_limit: u32,
+    /// a value
+    pub stop_limit: u32,
+    /// a value
+    pub most: u32,
+}
+
+impl Shader for WalkConstraints {
+    type Args<'a> = WalkConstraintsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "walk_constraints",
+        words: include_spirv!("../spv/walk_constraints.spv"),
+        without_float64: Some(include_spirv!("../spv/walk_constraints.integers.spv")),
+        argument_bytes: 120,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "ends", offset: 24, access: Access::Read },
+            BufferArgument { name: "spokes", offset: 32, access: Access::Read },
+            BufferArgument { name: "met", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "lengths", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "runs", offset: 56, access: Access::Read },
+            BufferArgument { name: "pieces", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "piece_met", offset: 72, access: Access::ReadWrite },
+            BufferArgument { name: "stops", offset: 80, access: Access::Write },
+            BufferArgument { name: "state", offset: 88, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 96, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "ae66f1007ab3fcfb827949deb9651daf8fec3ea4f115b7cd3f4582b65e0e213d",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.ends);
+        encoder.buffer(32, args.spokes);
+        encoder.buffer(40, args.met);
+        encoder.buffer(48, args.lengths);
+        encoder.buffer(56, args.runs);
+        encoder.buffer(64, args.pieces);
+        encoder.buffer(72, args.piece_met);
+        encoder.buffer(80, args.stops);
+        encoder.buffer(88, args.state);
+        encoder.buffer(96, args.words);
+        encoder.value(104, args.constraints);
+        encoder.value(108, args.piece_limit);
+        encoder.value(112, args.stop_limit);
+        encoder.value(116, args.most);
+    }
+}
+
+/// From one round of walks to the next; before the first, to the constraints that are no edges and all later pieces.
+#[derive(Debug, Clone, Copy)]
+pub enum WalkTurn {}
+
+/// Arguments of [`WalkTurn`].
+#[derive(Debug, Clone, Copy)]
+pub struct WalkTurnArgs<'a> {
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub piece_limit: u32,
+    /// a value
+    pub begins: u32,
+}
+
+impl Shader for WalkTurn {
+    type Args<'a> = WalkTurnArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "walk_turn",
+        words: include_spirv!("../spv/walk_turn.spv"),
+        without_float64: None,
+        argument_bytes: 16,
+        buffers: &[BufferArgument { name: "words", offset: 0, access: Access::ReadWrite }],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "dcac59626e1e10b443c31f1ffb65a7e3199a8c5b97c619425fa691867e715b5f",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.words);
+        encoder.value(8, args.piece_limit);
+        encoder.value(12, args.begins);
     }
 }

@@ -14,6 +14,7 @@
 
 mod crossings;
 mod error;
+pub mod gpu;
 mod insertion;
 pub mod kernels;
 pub mod reference;

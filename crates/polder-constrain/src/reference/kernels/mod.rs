@@ -2,4 +2,4 @@
 
 mod walk;
 
-pub use walk::find_spokes;
+pub use walk::*;

@@ -1,9 +1,14 @@
 //! The kernels of constraints that are cut at vertices.
+//!
+//! *Items* are the constraints, and behind them the later [pieces](Piece) of long ones.
 
-use polder_mesh::GhostMesh;
+use crate::reference::fan::{Departure, depart_by_turning, enter, leave};
+use glam::DVec2;
+use polder_mesh::{GhostMesh, NONE};
+use polder_predicates::Sign;
 
-/// For every vertex a half-edge that leaves it, or [`NONE`](polder_mesh::NONE), and how many do. Any half-edge would do:
-/// nothing of a result depends on which it is.
+/// For every vertex a half-edge that leaves it, or [`NONE`], and how many do. Any half-edge would do: nothing of a result
+/// depends on which it is.
 pub fn find_spokes(mesh: &GhostMesh, vertices: usize) -> (Vec<u32>, Vec<u32>) {
     let mut degrees = vec![0; vertices];
     for &v in mesh.triangles.iter().flatten() {
@@ -12,4 +17,217 @@ pub fn find_spokes(mesh: &GhostMesh, vertices: usize) -> (Vec<u32>, Vec<u32>) {
         }
     }
     (mesh.half_edge_of_vertex(vertices), degrees)
+}
+
+/// For each point of the input the vertex that it is or equals.
+pub fn name_points(order: &[u32], vertex_of: &[u32]) -> Vec<u32> {
+    let mut vertices = vec![0; order.len()];
+    order.iter().zip(vertex_of).for_each(|(&point, &v)| vertices[point as usize] = v);
+    vertices
+}
+
+/// The ends of the constraints as vertices.
+pub fn name_ends(vertices: &[u32], constraints: &[[u32; 2]]) -> Vec<[u32; 2]> {
+    constraints.iter().map(|c| c.map(|end| vertices[end as usize])).collect()
+}
+
+/// What [`find_edges`] finds.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Edges {
+    /// How many vertices the chain of each constraint has; [`NONE`] for one that has to walk.
+    pub lengths: Vec<u32>,
+    /// Whether it walks from its second end to its first.
+    pub reversed: Vec<bool>,
+    /// Those that have to walk, in order.
+    pub walkers: Vec<u32>,
+}
+
+/// Which constraints are edges: one is looked for among up to `most` spokes of the end with fewer.
+pub fn find_edges(mesh: &GhostMesh, ends: &[[u32; 2]], spokes: &[u32], degrees: &[u32], most: u32) -> Edges {
+    let mut edges = Edges::default();
+    for (c, &[a, b]) in ends.iter().enumerate() {
+        let reversed = a != b && degrees[b as usize] < degrees[a as usize];
+        let (from, to) = if reversed { (b, a) } else { (a, b) };
+        let mut h = spokes[from as usize];
+        let mut found = false;
+        for _ in 0..degrees[from as usize].min(most) {
+            found |= mesh.destination(h) == to;
+            h = mesh.rotate_ccw(h);
+        }
+        let length = if a == b { 1 } else { 2 };
+        edges.lengths.push(if a == b || found { length } else { NONE });
+        edges.reversed.push(reversed);
+        if a != b && !found {
+            edges.walkers.push(c as u32);
+        }
+    }
+    edges
+}
+
+/// A later piece of a long walk; those of one walker stand together in order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// Whose piece it is.
+    pub walker: u32,
+    /// Its number, from 1: the walk up to the first of these is number 0.
+    pub number: u32,
+    /// How many pieces the walker has, number 0 included.
+    pub count: u32,
+    /// The half-edge that it begins by crossing, if one was found.
+    pub beginning: Option<u32>,
+    /// In the first one of a walker: the least number of a piece that came to the walker's end.
+    pub last: u32,
+}
+
+impl Piece {
+    /// As the device has it.
+    pub fn words(&self) -> [u32; 4] {
+        [self.walker, self.number << 16 | self.count, self.beginning.unwrap_or(NONE), self.last]
+    }
+
+    /// Where the first later piece of the same walker stands, if this one stands at `p`.
+    pub fn first(&self, p: usize) -> usize {
+        p + 1 - self.number as usize
+    }
+}
+
+/// The vertices that each item meets, from where it begins; `list` has the constraints that walk. A piece that comes to the
+/// end of its constraint says so in the first one.
+///
+/// # Panics
+///
+/// If the mesh is not a triangulation of a convex hull.
+pub fn walk_constraints(
+    mesh: &GhostMesh,
+    positions: &[DVec2],
+    ends: &[[u32; 2]],
+    spokes: &[u32],
+    edges: &Edges,
+    pieces: &mut [Piece],
+) -> Vec<Vec<u32>> {
+    let mut met = vec![Vec::new(); ends.len() + pieces.len()];
+    let run_of = |c: u32, pieces: &[Piece]| pieces.iter().position(|piece| piece.walker == c);
+    let later = (0..pieces.len()).map(|p| (pieces[p].walker, Some(p)));
+    let items: Vec<(u32, Option<usize>)> = edges.walkers.iter().map(|&c| (c, None)).chain(later).collect();
+    for (c, piece) in items {
+        let [a, b] = ends[c as usize];
+        let [from, to] = if edges.reversed[c as usize] { [b, a] } else { [a, b] };
+        let run = run_of(c, pieces);
+        let rest = match (piece, run) {
+            (Some(p), Some(run)) => p + 1..run + pieces[run].count as usize - 1,
+            (None, Some(run)) => run..run + pieces[run].count as usize - 1,
+            _ => 0..0,
+        };
+        let until = pieces[rest].iter().find_map(|piece| piece.beginning);
+        let begin = match piece.map(|p| pieces[p].beginning) {
+            None => depart_by_turning(mesh, positions, spokes[from as usize], to),
+            Some(Some(h)) => Some(Departure::Across(h)),
+            Some(None) => continue,
+        };
+        let item = piece.map_or(c as usize, |p| ends.len() + p);
+        let at_end = walk_on(mesh, positions, [from, to], begin, until, spokes, &mut met[item]);
+        if let (true, Some(run)) = (at_end, run) {
+            pieces[run].last = pieces[run].last.min(piece.map_or(0, |p| pieces[p].number));
+        }
+    }
+    met
+}
+
+/// Whether the walk came to its end, not to the half-edge `until`.
+fn walk_on(
+    mesh: &GhostMesh,
+    positions: &[DVec2],
+    [from, to]: [u32; 2],
+    begin: Option<Departure>,
+    until: Option<u32>,
+    spokes: &[u32],
+    met: &mut Vec<u32>,
+) -> bool {
+    let line = [from, to].map(|v| positions[v as usize]);
+    let mut departure = begin;
+    loop {
+        let vertex = match departure.expect("the mesh is a triangulation of a convex hull") {
+            Departure::Along(h) => mesh.destination(h),
+            Departure::Across(mut h) => loop {
+                if Some(h) == until {
+                    return false;
+                }
+                let (g, side) = enter(mesh, positions, h, line).expect("the mesh is a triangulation of a convex hull");
+                if side == Sign::Zero {
+                    break mesh.apex(g);
+                }
+                h = leave(g, side);
+            },
+        };
+        if vertex == to {
+            return true;
+        }
+        met.push(vertex);
+        departure = depart_by_turning(mesh, positions, spokes[vertex as usize], to);
+    }
+}
+
+/// What superfluous pieces met is forgotten; what the others met is added to the length of the chain.
+pub fn trim_pieces(pieces: &[Piece], piece_met: &mut [u32], lengths: &mut [u32]) {
+    for (p, piece) in pieces.iter().enumerate() {
+        if piece.number > pieces[piece.first(p)].last {
+            piece_met[p] = 0;
+        } else {
+            lengths[piece.walker as usize] += piece_met[p];
+        }
+    }
+}
+
+/// The chain of each constraint from its ends and what its items met, which [`trim_pieces`] has counted.
+pub fn place_chains(
+    ends: &[[u32; 2]],
+    reversed: &[bool],
+    pieces: &[Piece],
+    piece_met: &[u32],
+    met: &[Vec<u32>],
+) -> Vec<Vec<u32>> {
+    let mut chains = met[..ends.len()].to_vec();
+    for (p, piece) in pieces.iter().enumerate().filter(|(p, _)| piece_met[*p] > 0) {
+        chains[piece.walker as usize].extend(&met[ends.len() + p]);
+    }
+    for ((chain, &[a, b]), &reversed) in chains.iter_mut().zip(ends).zip(reversed) {
+        if reversed {
+            chain.reverse();
+        }
+        chain.insert(0, a);
+        if a != b {
+            chain.push(b);
+        }
+    }
+    chains
+}
+
+/// The sub-constraints along chains, the lower vertex of each first.
+pub fn list_sub_constraints(chains: &[Vec<u32>]) -> Vec<[u32; 2]> {
+    let pairs = chains.iter().flat_map(|chain| chain.windows(2));
+    pairs.map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]).collect()
+}
+
+/// Chains in other names.
+pub fn rename_chains(chains: &mut [u32], names: &[u32]) {
+    chains.iter_mut().for_each(|v| *v = names.get(*v as usize).copied().unwrap_or(*v));
+}
+
+/// From one round of walks to the next; before the first, to `walkers` constraints and all later pieces.
+///
+/// Words: items that go on, items of the next round, which list, the round, three of workgroups, and the constraints of the
+/// first list; at 16 the number of later pieces.
+pub fn walk_turn(words: &mut [u32], piece_limit: u32, begins: bool) {
+    let mut waiting = words[1];
+    if begins {
+        words[7] = waiting;
+        waiting += words[16].min(piece_limit);
+    }
+    let (parity, round) = (words[2], words[3]);
+    let [x, y, z] = polder_vulkan::groups_for(waiting as usize, 256);
+    words[0] = waiting;
+    words[1] = 0;
+    words[2] = if begins { 0 } else { 1 - parity };
+    words[3] = if begins { 0 } else { round + 1 };
+    words[4..7].copy_from_slice(&[x, y, z]);
 }

@@ -1,0 +1,3 @@
+//! The stage on a device.
+
+pub mod walk;

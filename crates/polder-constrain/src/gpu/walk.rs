@@ -1,0 +1,512 @@
+//! Constraints are cut at the vertices that they run through. \[QCT\] section 4.1.
+//!
+//! 1. *Names.* The ends of the constraints, as the input numbers its points, become vertices of the mesh.
+//! 2. *Edges.* Every vertex learns some half-edge that leaves it, and how many do. A constraint looks for its other end
+//!    among the neighbors of the end that has fewer, by their numbers alone: then it is an edge and done.
+//! 3. *Walk.* The others walk straight to their other end, one invocation each, and list the vertices that they meet. Signs
+//!    are always those of the whole line, so that a step is one orientation wherever the walk is. A walk that has not ended
+//!    after some number of steps goes on in the next dispatch.
+//! 4. *Chains.* A constraint's chain is its ends and what it met; where chains begin is a prefix sum. From each vertex of a
+//!    chain to the next is a sub-constraint.
+//!
+//! Departures from the reference: constraints that repeat walk each for itself and their sub-constraints stand there
+//! repeatedly, in the order of constraints, not sorted. Chains are the same.
+//!
+//! # Cost
+//!
+//! Memory: 8 bytes a vertex, 32 a constraint, and 24 for each vertex that may be met. A constraint that is an edge reads a
+//! row of the mesh for each spoke that it looks at, half of them on average.
+
+use crate::ConstrainError;
+use crate::kernels::*;
+use polder_flip::gpu::{Arithmetic, Mesh};
+use polder_vulkan::primitives::Scan;
+use polder_vulkan::{
+    Buffer, Device, DeviceKind, Error, Estimate, Kernel, Pool, ReadBack, Recording, RunReport, View, groups_for,
+};
+
+const NONE: u32 = u32::MAX;
+const WORKGROUP: u32 = 256;
+const WORDS: usize = 28;
+/// Workgroups of kernels that stride over lists whose length only the device knows.
+const GROUPS: u32 = 1056;
+
+/// Places of words that the host knows, as in `walk.glsl`.
+#[derive(Clone, Copy)]
+enum Word {
+    Waiting = 0,
+    Groups = 4,
+    Stops = 8,
+    Lost = 12,
+    SubConstraints = 20,
+    Chained = 24,
+}
+
+/// The input's points in the order of the mesh, and which vertices they are.
+#[derive(Clone, Copy, Debug)]
+pub struct Names<'a> {
+    /// The point of the input, by the number that positions have; each once.
+    pub order: View<'a, u32>,
+    /// The vertex that it is or equals, by the same.
+    pub vertex_of: View<'a, u32>,
+}
+
+/// What is to be cut.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// The ends of the constraints.
+    pub constraints: View<'a, [u32; 2]>,
+    /// Where ends are points of the input. Without, they are vertices.
+    pub names: Option<Names<'a>>,
+}
+
+/// What the stage holds beside the mesh.
+#[derive(Debug)]
+pub struct Buffers {
+    constraints: usize,
+    pieces_room: usize,
+    stops_room: usize,
+    spokes: Buffer<u32>,
+    degrees: Buffer<u32>,
+    ends: Buffer<[u32; 2]>,
+    met: Buffer<u32>,
+    offsets: Buffer<u32>,
+    stops: Buffer<[u32; 3]>,
+    /// Before there are chains: where the later pieces of constraints stand.
+    chains: Buffer<u32>,
+    /// Before there are sub-constraints: the state of walks and two lists.
+    sub_constraints: Buffer<[u32; 2]>,
+    pieces: Buffer<[u32; 4]>,
+    piece_met: Buffer<u32>,
+    words: Buffer<u32>,
+    scan: Scan,
+}
+
+/// How much room there is for what.
+#[derive(Clone, Copy)]
+struct Room {
+    vertices: usize,
+    constraints: usize,
+    stops: usize,
+    pieces: usize,
+}
+
+impl Room {
+    fn new(vertices: usize, constraints: usize, stops: usize) -> Self {
+        // Lists lie behind each other, each at a multiple of 16 bytes.
+        Self { vertices, constraints, stops, pieces: 0usize.wrapping_sub(constraints) & 3 }
+    }
+
+    fn items(&self) -> usize {
+        self.constraints + self.pieces
+    }
+
+    fn chains(&self) -> usize {
+        2 * self.constraints + self.stops
+    }
+
+    fn sub_constraints(&self) -> usize {
+        (self.constraints + self.stops).max((3 * self.items()).div_ceil(2))
+    }
+
+    fn estimate(&self) -> Estimate {
+        Estimate::new()
+            .buffer::<u32>("spokes", self.vertices)
+            .buffer::<u32>("degrees", self.vertices)
+            .buffer::<[u32; 2]>("ends of constraints", self.constraints)
+            .buffer::<u32>("vertices met", self.constraints)
+            .buffer::<u32>("offsets of chains", self.constraints + 1)
+            .buffer::<[u32; 3]>("stops", self.stops)
+            .buffer::<u32>("chains", self.chains())
+            .buffer::<[u32; 2]>("sub-constraints", self.sub_constraints())
+            .buffer::<[u32; 4]>("pieces", self.pieces)
+            .buffer::<u32>("vertices met by pieces", self.pieces)
+            .buffer::<u32>("walk words", WORDS)
+            .and(Scan::estimate(self.items().max(self.constraints + 1)))
+    }
+}
+
+impl Buffers {
+    /// Gives all that is not a result; see [`Buffer::give`].
+    pub fn give(&self, pool: &Pool) {
+        self.ends.give(pool);
+        self.met.give(pool);
+        self.stops.give(pool);
+        self.pieces.give(pool);
+        self.piece_met.give(pool);
+    }
+
+    /// For each vertex some half-edge that leaves it; [`NONE`](polder_mesh::NONE) for a point that is no vertex.
+    pub fn spokes(&self) -> View<'_, u32> {
+        self.spokes.view()
+    }
+
+    /// For each vertex how many half-edges leave it.
+    pub fn degrees(&self) -> View<'_, u32> {
+        self.degrees.view()
+    }
+
+    /// The sub-constraints, constraint after constraint and along each: pairs of vertices, the lower one first. Where
+    /// constraints repeat or overlap, theirs stand here repeatedly.
+    pub fn sub_constraints(&self) -> View<'_, [u32; 2]> {
+        self.sub_constraints.view()
+    }
+
+    /// One word: how many there are; none if a walk was lost or there was no room.
+    ///
+    /// # Errors
+    ///
+    /// None.
+    pub fn sub_constraint_count(&self) -> Result<View<'_, u32>, Error> {
+        self.word(Word::SubConstraints, 1)
+    }
+
+    /// For each constraint where its chain begins, and the end of the last one. Its sub-constraints begin at the same
+    /// number, less its own.
+    ///
+    /// # Errors
+    ///
+    /// None.
+    pub fn offsets(&self) -> Result<View<'_, u32>, Error> {
+        self.offsets.slice(0..self.constraints + 1)
+    }
+
+    /// The vertices along the constraints, from first end to second; one for a constraint of zero length.
+    pub fn chains(&self) -> View<'_, u32> {
+        self.chains.view()
+    }
+
+    /// One word: how many vertices all chains have.
+    ///
+    /// # Errors
+    ///
+    /// None.
+    pub fn chained(&self) -> Result<View<'_, u32>, Error> {
+        self.word(Word::Chained, 1)
+    }
+
+    fn word(&self, word: Word, count: usize) -> Result<View<'_, u32>, Error> {
+        self.words.slice(word as usize..word as usize + count)
+    }
+}
+
+/// What came out.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Sub-constraints, repeated ones included.
+    pub sub_constraints: u64,
+    /// Vertices in all chains.
+    pub chained: u64,
+}
+
+/// Where [`Counts`] will be found in the report of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Read {
+    words: ReadBack,
+    room: u32,
+}
+
+impl Read {
+    /// After the run.
+    ///
+    /// # Errors
+    ///
+    /// [`ConstrainError::WalkLost`] if the mesh was no triangulation; [`ConstrainError::TooManyStops`] if buffers with more
+    /// room are needed.
+    pub fn result(&self, report: &RunReport) -> Result<Counts, ConstrainError> {
+        let words = report.words(self.words);
+        let word = |at: Word| words.get(at as usize).copied().unwrap_or(0);
+        let (constraint, needed, room) = (word(Word::Lost), word(Word::Stops), self.room);
+        if constraint != NONE {
+            return Err(ConstrainError::WalkLost { constraint });
+        }
+        if needed > room {
+            return Err(ConstrainError::TooManyStops { needed, room });
+        }
+        Ok(Counts { sub_constraints: word(Word::SubConstraints).into(), chained: word(Word::Chained).into() })
+    }
+}
+
+/// The kernels of the stage on one device.
+#[derive(Debug)]
+pub struct Stage {
+    device: Device,
+    /// Steps of a walk in one dispatch.
+    most: u32,
+    name_points: Kernel<NamePoints>,
+    name_ends: Kernel<NameEnds>,
+    find_spokes: Kernel<FindSpokes>,
+    find_edges: Kernel<FindEdges>,
+    turn: Kernel<WalkTurn>,
+    walk: Kernel<WalkConstraints>,
+    trim: Kernel<TrimPieces>,
+    place: Kernel<PlaceChains>,
+    list: Kernel<ListSubConstraints>,
+    rename: Kernel<RenameChains>,
+}
+
+impl Stage {
+    /// Compiles the kernels.
+    ///
+    /// # Errors
+    ///
+    /// Those of the device.
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        Self::with_arithmetic(device, Arithmetic::of(device)?)
+    }
+
+    /// With a given arithmetic: for tests, and where the device was asked before.
+    ///
+    /// # Errors
+    ///
+    /// Those of the device.
+    pub fn with_arithmetic(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
+        let workgroup = [("WORKGROUP", WORKGROUP)];
+        // lavapipe leaves a shader, without a word, once its loops have made 65535 turns.
+        let most = if device.info().kind == DeviceKind::Cpu { 128 } else { 4096 };
+        Ok(Self {
+            device: device.clone(),
+            most,
+            name_points: Kernel::new(device, &workgroup)?,
+            name_ends: Kernel::new(device, &workgroup)?,
+            find_spokes: Kernel::new(device, &workgroup)?,
+            find_edges: Kernel::new(device, &workgroup)?,
+            turn: Kernel::new(device, &workgroup)?,
+            walk: arithmetic.kernel(device, &workgroup)?,
+            trim: Kernel::new(device, &workgroup)?,
+            place: Kernel::new(device, &workgroup)?,
+            list: Kernel::new(device, &workgroup)?,
+            rename: Kernel::new(device, &workgroup)?,
+        })
+    }
+
+    /// Steps of a walk in one dispatch, other than what suits the device: for tests.
+    #[doc(hidden)]
+    pub fn set_most_steps(&mut self, most: u32) {
+        self.most = most.max(2);
+    }
+
+    /// Room for vertices between ends that most inputs do with.
+    pub fn usual_stops(constraints: usize) -> usize {
+        2 * constraints + (1 << 16)
+    }
+
+    /// What [`Stage::buffers`] will hold.
+    pub fn estimate(vertices: usize, constraints: usize, stops: usize) -> Estimate {
+        Room::new(vertices, constraints, stops).estimate()
+    }
+
+    /// Memory for so many constraints on a mesh of so many vertices, which meet at most `stops` vertices between their ends.
+    ///
+    /// # Errors
+    ///
+    /// If the memory cannot be had: then before any of it is allocated.
+    pub fn buffers(&self, vertices: usize, constraints: usize, stops: usize) -> Result<Buffers, Error> {
+        let device = &self.device;
+        let room = Room::new(vertices, constraints, stops);
+        room.estimate().check(device)?;
+        Ok(Buffers {
+            constraints,
+            pieces_room: room.pieces,
+            stops_room: stops,
+            spokes: Buffer::new(device, "spokes", vertices)?,
+            degrees: Buffer::new(device, "degrees", vertices)?,
+            ends: Buffer::new(device, "ends of constraints", constraints)?,
+            met: Buffer::new(device, "vertices met", constraints)?,
+            offsets: Buffer::new(device, "offsets of chains", constraints + 1)?,
+            stops: Buffer::new(device, "stops", stops)?,
+            chains: Buffer::new(device, "chains", room.chains())?,
+            sub_constraints: Buffer::new(device, "sub-constraints", room.sub_constraints())?,
+            pieces: Buffer::new(device, "pieces", room.pieces)?,
+            piece_met: Buffer::new(device, "vertices met by pieces", room.pieces)?,
+            words: Buffer::new(device, "walk words", WORDS)?,
+            scan: Scan::new(device, room.items().max(constraints + 1))?,
+        })
+    }
+
+    /// Cuts constraints at the vertices of a triangulation of a convex hull, Delaunay or not.
+    ///
+    /// # Errors
+    ///
+    /// If the buffers are for another number of constraints or vertices.
+    pub fn record(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        input: Input<'_>,
+    ) -> Result<Read, Error> {
+        let (count, vertices) = (buffers.constraints, buffers.spokes.len());
+        let named = input.names.map_or(vertices, |names| names.order.len().min(names.vertex_of.len()));
+        if input.constraints.len() != count || mesh.vertices() != vertices || named != vertices {
+            let (constraints, points) = (input.constraints.len(), mesh.vertices());
+            let why = format!(
+                "{constraints} constraints, {points} vertices, {named} names; buffers for {count} and {vertices}"
+            );
+            return Err(Error::Recording { command: "walk", why });
+        }
+        recording.fill(buffers.words.view(), 0);
+        recording.fill(buffers.word(Word::Lost, 1)?, NONE);
+        let ends = self.record_names(recording, buffers, input);
+        self.record_spokes(recording, mesh, buffers);
+        self.record_walks(recording, mesh, buffers, ends)?;
+        self.record_chains(recording, buffers, ends);
+        Ok(Read { words: recording.read(buffers.words.view()), room: buffers.stops_room as u32 })
+    }
+
+    /// Puts other names in place of the vertices of all chains.
+    pub fn record_rename(&self, recording: &mut Recording, buffers: &Buffers, names: View<'_, u32>) {
+        let arguments = RenameChainsArgs {
+            words: buffers.words.view(),
+            names,
+            chains: buffers.chains.view(),
+            limit: buffers.chains.len() as u32,
+            vertices: names.len() as u32,
+        };
+        recording.dispatch(&self.rename, strides(buffers.chains.len()), &arguments);
+    }
+
+    fn record_names<'a>(
+        &self,
+        recording: &mut Recording,
+        buffers: &'a Buffers,
+        input: Input<'a>,
+    ) -> View<'a, [u32; 2]> {
+        let Some(names) = input.names else { return input.constraints };
+        let (points, count) = (buffers.spokes.len(), buffers.constraints);
+        // Degrees come later.
+        let vertices = buffers.degrees.view();
+        let Names { order, vertex_of } = names;
+        let arguments = NamePointsArgs { order, vertex_of, vertices, count: points as u32 };
+        recording.dispatch(&self.name_points, groups_for(points, WORKGROUP), &arguments);
+        let (constraints, ends) = (input.constraints, buffers.ends.view());
+        let arguments = NameEndsArgs {
+            vertices,
+            constraints: constraints.cast(),
+            ends: ends.cast(),
+            count: count as u32,
+            points: points as u32,
+        };
+        recording.dispatch(&self.name_ends, groups_for(count, WORKGROUP), &arguments);
+        ends
+    }
+
+    fn record_spokes(&self, recording: &mut Recording, mesh: &Mesh, buffers: &Buffers) {
+        let (spokes, degrees) = (buffers.spokes.view(), buffers.degrees.view());
+        recording.fill(spokes, NONE);
+        recording.fill(degrees, 0);
+        let arguments = FindSpokesArgs {
+            triangles: mesh.corners(),
+            slots: mesh.slots(),
+            spokes,
+            degrees,
+            limit: mesh.capacity() as u32,
+            vertices: mesh.vertices() as u32,
+        };
+        recording.dispatch(&self.find_spokes, groups_for(mesh.capacity(), WORKGROUP), &arguments);
+    }
+
+    fn record_walks(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        ends: View<'_, [u32; 2]>,
+    ) -> Result<(), Error> {
+        let (count, piece_limit) = (buffers.constraints, buffers.pieces_room as u32);
+        let items = count + buffers.pieces_room;
+        let state = buffers.sub_constraints.view().cast::<u32>();
+        let runs = buffers.chains.view();
+        let words = buffers.words.view();
+        recording.fill(runs.slice(0..count)?, NONE);
+        let arguments = FindEdgesArgs {
+            triangles: mesh.corners(),
+            links: mesh.twins(),
+            ends: ends.cast(),
+            spokes: buffers.spokes.view(),
+            degrees: buffers.degrees.view(),
+            met: buffers.met.view(),
+            lengths: buffers.offsets.view(),
+            list: state.slice(items..2 * items)?,
+            words,
+            constraints: count as u32,
+        };
+        recording.dispatch(&self.find_edges, groups_for(count + 1, WORKGROUP), &arguments);
+        recording.dispatch(&self.turn, [1, 1, 1], &WalkTurnArgs { words, piece_limit, begins: 1 });
+        let waiting = buffers.word(Word::Waiting, 1)?;
+        let groups = buffers.word(Word::Groups, 3)?;
+        // A walk crosses each edge, or turns over it, from each of its ends once at most.
+        let bound = 16 + 8 * (mesh.capacity() as u64) / u64::from(self.most - 1);
+        let bound = u32::try_from(bound).unwrap_or(u32::MAX);
+        recording.repeat_ahead("walk", waiting, bound, 1, 4, |round| {
+            let arguments = WalkConstraintsArgs {
+                triangles: mesh.corners(),
+                links: mesh.twins(),
+                positions: mesh.positions().cast(),
+                ends: ends.cast(),
+                spokes: buffers.spokes.view(),
+                met: buffers.met.view(),
+                lengths: buffers.offsets.view(),
+                runs,
+                pieces: buffers.pieces.view(),
+                piece_met: buffers.piece_met.view(),
+                stops: buffers.stops.view().cast(),
+                state,
+                words,
+                constraints: count as u32,
+                piece_limit,
+                stop_limit: buffers.stops_room as u32,
+                most: self.most,
+            };
+            round.dispatch_indirect(&self.walk, groups, &arguments);
+            round.dispatch(&self.turn, [1, 1, 1], &WalkTurnArgs { words, piece_limit, begins: 0 });
+        });
+        Ok(())
+    }
+
+    fn record_chains(&self, recording: &mut Recording, buffers: &Buffers, ends: View<'_, [u32; 2]>) {
+        let constraints = buffers.constraints as u32;
+        let (met, offsets, words) = (buffers.met.view(), buffers.offsets.view(), buffers.words.view());
+        let (pieces, before) = (buffers.pieces.view(), buffers.piece_met.view());
+        let (stops, stop_limit) = (buffers.stops.view().cast(), buffers.stops_room as u32);
+        let chains = buffers.chains.view();
+        let piece_limit = buffers.pieces_room as u32;
+        let arguments = TrimPiecesArgs { pieces, piece_met: before, lengths: offsets, words, piece_limit };
+        recording.dispatch(&self.trim, strides(buffers.pieces_room), &arguments);
+        buffers.scan.record(recording, buffers.constraints + 1, offsets, offsets, None);
+        // One invocation a constraint at least; they stride over what the constraints met.
+        let most = buffers.stops_room.min((GROUPS * WORKGROUP) as usize);
+        let groups = groups_for(buffers.constraints.max(most).max(1), WORKGROUP);
+        let arguments = PlaceChainsArgs {
+            ends: ends.cast(),
+            met,
+            offsets,
+            pieces,
+            before,
+            stops,
+            words,
+            chains,
+            constraints,
+            stop_limit,
+        };
+        recording.dispatch(&self.place, groups, &arguments);
+        let arguments = ListSubConstraintsArgs {
+            met,
+            offsets,
+            pieces,
+            before,
+            stops,
+            words,
+            chains,
+            sub_constraints: buffers.sub_constraints.view().cast(),
+            constraints,
+            stop_limit,
+        };
+        recording.dispatch(&self.list, groups, &arguments);
+    }
+}
+
+/// Workgroups that stride over up to so many items.
+fn strides(items: usize) -> [u32; 3] {
+    [(items as u64).div_ceil(WORKGROUP.into()).clamp(1, GROUPS.into()) as u32, 1, 1]
+}

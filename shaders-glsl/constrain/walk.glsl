@@ -1,0 +1,54 @@
+// What the kernels of the walk share.
+//
+// *Items* are the constraints, and behind them the later pieces of long ones. An item that has not come to its end in one
+// dispatch goes on in the next. For each item there is a word, the half-edge at which it stands, with CROSSES if it is about
+// to cross it; behind these lie two lists of items, of which a round reads one and writes the other.
+#ifndef WALK_GLSL
+#define WALK_GLSL
+
+#include "items.glsl"
+#include "mesh.glsl"
+#include "pieces.glsl"
+
+BUFFER(U32x2, uvec2, 8, );
+BUFFER(ReadU32x2, uvec2, 8, readonly);
+BUFFER(WriteU32x2, uvec2, 8, writeonly);
+
+const uint CROSSES = 0x80000000u;
+
+// For each constraint how many vertices its first piece met, with REVERSED if it began at the second end.
+const uint REVERSED = 0x80000000u;
+const uint MET = 0x7fffffffu;
+
+// The words that steer. Items that go on, those of the next round, and which list holds the former.
+const uint WAITING = 0u;
+const uint NEXT = 1u;
+const uint PARITY = 2u;
+const uint ROUND = 3u;
+// Workgroups for them.
+const uint GROUPS = 4u;
+// Constraints in the first list; behind them come all later pieces.
+const uint WALKERS = 7u;
+// Vertices met, also those for which there was no room.
+const uint STOPS = 8u;
+// The lowest constraint whose walk was lost; NONE before.
+const uint LOST_WALK = 12u;
+// Later pieces, also those for which there was no room.
+const uint PIECES = 16u;
+// Sub-constraints, and vertices in all chains.
+const uint SUB_CONSTRAINTS = 20u;
+const uint CHAINED = 24u;
+
+// No list is to grow so long that its count wraps around.
+const uint MOST_STOPS = 0xf0000000u;
+
+// Where the list of this round begins, and that of the next.
+uint list_now(U32 words, uint items) {
+    return items * (1u + words.at[PARITY]);
+}
+
+uint list_next(U32 words, uint items) {
+    return items * (2u - words.at[PARITY]);
+}
+
+#endif
