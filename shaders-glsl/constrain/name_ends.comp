@@ -19,6 +19,6 @@ void main() {
     uint i = item_index();
     if (i < count) {
         uvec2 c = min(constraints.at[i], uvec2(points - 1u));
-        ends.at[i] = uvec2(vertices.at[c.x], vertices.at[c.y]);
+        ends.at[i] = min(uvec2(vertices.at[c.x], vertices.at[c.y]), uvec2(points - 1u));
     }
 }

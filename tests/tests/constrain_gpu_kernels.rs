@@ -431,26 +431,3 @@ fn list_sub_constraints() {
         assert!(gpu.fetch(out.view()) == wanted, "{name}: sub-constraints");
     }
 }
-
-#[test]
-fn rename_chains() {
-    let mut gpu = Gpu::open();
-    let kernel = Kernel::<RenameChains>::new(&gpu.device, &[]).unwrap();
-    let (names, _) = shuffled(700, 19);
-    for count in [0usize, 1, 255, 256, 257, 4000] {
-        let mut chains: Vec<u32> = vulkan_support::words(20, count).iter().map(|word| word % 710).collect();
-        let mut words = [0; 28];
-        words[CHAINED] = count as u32;
-        let (words, on, named) = (gpu.buffer(&words), gpu.buffer(&chains), gpu.buffer(&names));
-        let arguments = RenameChainsArgs {
-            words: words.view(),
-            names: named.view(),
-            chains: on.view(),
-            limit: count as u32,
-            vertices: names.len() as u32,
-        };
-        run(&mut gpu, &kernel, 300, &arguments);
-        expected::rename_chains(&mut chains, &names);
-        assert!(gpu.fetch(on.view()) == chains, "{count} vertices");
-    }
-}

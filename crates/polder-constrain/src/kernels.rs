@@ -228,7 +228,7 @@ impl Shader for NameEnds {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "a03b4c1388264cff662eaa17ddd99a64a3be15a369307975f81923b30aba21dc",
+        source_hash: "1889986b5cf0efd55fc81f6ca18eebb9e84e661f01a1844848e019280e2f013d",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -352,54 +352,6 @@ impl Shader for PlaceChains {
         encoder.buffer(56, args.chains);
         encoder.value(64, args.constraints);
         encoder.value(68, args.stop_limit);
-    }
-}
-
-/// Chains in other names.
-#[derive(Debug, Clone, Copy)]
-pub enum RenameChains {}
-
-/// Arguments of [`RenameChains`].
-#[derive(Debug, Clone, Copy)]
-pub struct RenameChainsArgs<'a> {
-    /// read
-    pub words: View<'a, u32>,
-    /// read
-    pub names: View<'a, u32>,
-    /// read and written
-    pub chains: View<'a, u32>,
-    /// a value
-    pub limit: u32,
-    /// a value
-    pub vertices: u32,
-}
-
-impl Shader for RenameChains {
-    type Args<'a> = RenameChainsArgs<'a>;
-
-    const CODE: Code = Code {
-        name: "rename_chains",
-        words: include_spirv!("../spv/rename_chains.spv"),
-        without_float64: None,
-        argument_bytes: 32,
-        buffers: &[
-            BufferArgument { name: "words", offset: 0, access: Access::Read },
-            BufferArgument { name: "names", offset: 8, access: Access::Read },
-            BufferArgument { name: "chains", offset: 16, access: Access::ReadWrite },
-        ],
-        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
-        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
-        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "09fb834dd65dee5c0a689776e18ef296974b982250945fe6dfb6c4e89781234f",
-        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
-    };
-
-    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
-        encoder.buffer(0, args.words);
-        encoder.buffer(8, args.names);
-        encoder.buffer(16, args.chains);
-        encoder.value(24, args.limit);
-        encoder.value(28, args.vertices);
     }
 }
 

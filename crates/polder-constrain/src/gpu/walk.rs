@@ -242,7 +242,6 @@ pub struct Stage {
     trim: Kernel<TrimPieces>,
     place: Kernel<PlaceChains>,
     list: Kernel<ListSubConstraints>,
-    rename: Kernel<RenameChains>,
 }
 
 impl Stage {
@@ -276,7 +275,6 @@ impl Stage {
             trim: Kernel::new(device, &workgroup)?,
             place: Kernel::new(device, &workgroup)?,
             list: Kernel::new(device, &workgroup)?,
-            rename: Kernel::new(device, &workgroup)?,
         })
     }
 
@@ -352,18 +350,6 @@ impl Stage {
         self.record_walks(recording, mesh, buffers, ends)?;
         self.record_chains(recording, buffers, ends);
         Ok(Read { words: recording.read(buffers.words.view()), room: buffers.stops_room as u32 })
-    }
-
-    /// Puts other names in place of the vertices of all chains.
-    pub fn record_rename(&self, recording: &mut Recording, buffers: &Buffers, names: View<'_, u32>) {
-        let arguments = RenameChainsArgs {
-            words: buffers.words.view(),
-            names,
-            chains: buffers.chains.view(),
-            limit: buffers.chains.len() as u32,
-            vertices: names.len() as u32,
-        };
-        recording.dispatch(&self.rename, strides(buffers.chains.len()), &arguments);
     }
 
     fn record_names<'a>(

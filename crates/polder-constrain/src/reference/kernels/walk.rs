@@ -208,11 +208,6 @@ pub fn list_sub_constraints(chains: &[Vec<u32>]) -> Vec<[u32; 2]> {
     pairs.map(|pair| [pair[0].min(pair[1]), pair[0].max(pair[1])]).collect()
 }
 
-/// Chains in other names.
-pub fn rename_chains(chains: &mut [u32], names: &[u32]) {
-    chains.iter_mut().for_each(|v| *v = names.get(*v as usize).copied().unwrap_or(*v));
-}
-
 /// From one round of walks to the next; before the first, to `walkers` constraints and all later pieces.
 ///
 /// Words: items that go on, items of the next round, which list, the round, three of workgroups, and the constraints of the
