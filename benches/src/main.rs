@@ -5,6 +5,7 @@
 //! the result are not timed. Peak memory is measured in a process of its own for each case and program.
 #![forbid(unsafe_code)]
 
+mod figures;
 mod gpu;
 mod inputs;
 mod machine;
@@ -34,12 +35,15 @@ struct Arguments {
     /// Does not hold results of a Vulkan device against the reference, which takes a while.
     #[arg(long)]
     unchecked: bool,
-    /// Also the largest case of the triangulations on a Vulkan device.
+    /// Also the largest cases.
     #[arg(long)]
     full: bool,
-    /// A .node, .poly or .pslg to run on a Vulkan device instead of the usual cases.
+    /// A .node, .poly or .pslg to run on a Vulkan device instead of the usual cases, or to take into the figures.
     #[arg(long)]
     file: Option<PathBuf>,
+    /// The folder for the pictures of the figures.
+    #[arg(long)]
+    out: Option<PathBuf>,
     /// A small size and one run, to see that all works.
     #[arg(long)]
     quick: bool,
@@ -61,6 +65,8 @@ enum What {
     Memory,
     /// Whole triangulations on the Vulkan device that `POLDER_DEVICE` names, or the best one.
     Delaunay,
+    /// Flips over the triangles that constraints run through, and how many of them each does; no device needed.
+    Figures,
     /// The digital Voronoi diagram on the Vulkan device that `POLDER_DEVICE` names, or the best one.
     Voronoi,
 }
@@ -111,6 +117,10 @@ fn run(mut arguments: Arguments) -> Result<(), String> {
         let sizes = (arguments.quick, arguments.full);
         let file = arguments.file.as_deref();
         results.delaunay = Some(gpu::delaunay::run(runs, sizes, !arguments.unchecked, file)?);
+    }
+    if arguments.what.contains(&What::Figures) {
+        let (file, out) = (arguments.file.as_deref(), arguments.out.as_deref());
+        results.figures = Some(figures::run(file, arguments.full, arguments.quick, out)?);
     }
     if arguments.what.contains(&What::Voronoi) {
         let runs = arguments.runs.unwrap_or(10);

@@ -16,12 +16,23 @@ pub(crate) struct Results {
     pub(crate) memory: Vec<memory::Comparison>,
     pub(crate) delaunay: Option<crate::gpu::delaunay::Results>,
     pub(crate) voronoi: Option<crate::gpu::voronoi::Results>,
+    pub(crate) figures: Option<crate::figures::Results>,
 }
 
 impl Results {
     pub(crate) fn new(points: usize, runs: usize) -> Self {
         let (peers, degenerate, memory) = (Vec::new(), Vec::new(), Vec::new());
-        Self { machine: Machine::this(), points, runs, peers, degenerate, memory, delaunay: None, voronoi: None }
+        Self {
+            machine: Machine::this(),
+            points,
+            runs,
+            peers,
+            degenerate,
+            memory,
+            delaunay: None,
+            voronoi: None,
+            figures: None,
+        }
     }
 
     pub(crate) fn print_json(&self) {
@@ -71,6 +82,9 @@ impl Results {
         }
         if let Some(voronoi) = &self.voronoi {
             voronoi.print();
+        }
+        if let Some(figures) = &self.figures {
+            figures.print();
         }
     }
 }
