@@ -45,6 +45,7 @@ const uint OUT_COUNTS = 160u;   // pinned sites
 const uint OUT_WINNERS = 192u;
 const uint OUT_DEFERRED = 224u;
 const uint OUT_EDGES = 256u;    // outer edges of the winners' stars
+const uint OUT_SECOND = 288u;   // pinned sites that the first turn of a round did not elect
 
 uint first_item() {
     return gl_WorkGroupID.x * WORKGROUP + gl_LocalInvocationIndex;

@@ -33,6 +33,7 @@ void main() {
             words.at[OUT_WINNERS + k] = 0u;
             words.at[OUT_DEFERRED + k] = 0u;
             words.at[OUT_EDGES + k] = 0u;
+            words.at[OUT_SECOND + k] = 0u;
         }
     }
     if (phase == 0u) {

@@ -1,9 +1,10 @@
 // Take out: cuts ears off the star of each site that goes, and merges what is left, or moves the site to infinity if it is
 // on the hull. Nothing outside the star is touched; where its outer edges have gone is noted.
 //
-// The filter takes small stars, each by one invocation: it reads all of one, decides on all cuts, and then writes. Where it
-// is undecided, or the star is large, the other kernel takes the star by a workgroup, which tests all ears at once, and
-// after each cut those two that it changed. Stars larger than shared memory are cut step by step in the mesh.
+// Ears are cut in passes, in each all that have no ear beside them of lower priority: `pass` of the reference. The filter
+// takes small stars, each by one invocation: it reads all of one, decides on all cuts, and then writes. Where it is
+// undecided, or the star is large, the other kernel takes the star by a workgroup, an invocation for each spoke. Stars larger
+// than shared memory are cut step by step in the mesh: `scan` of the reference.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "takeout.glsl"
@@ -98,6 +99,11 @@ void place_edge(uint c, uint to) {
     }
 }
 
+// Whether the ear of spoke k comes before that of another spoke, if that has one.
+bool is_first(uint ears, uint k, uint other) {
+    return (ears >> other & 1u) == 0u || priority(ends[bits(end_of, k)]) < priority(ends[bits(end_of, other)]);
+}
+
 // Cuts the star whose spokes and ends are in the arrays; or does nothing and returns false.
 bool cut_small(uint v, uint degree, uint ghost) {
     uvec4 at = positions.at[v];
@@ -116,29 +122,51 @@ bool cut_small(uint v, uint degree, uint ghost) {
     }
     make_ring(degree);
     bool is_inner = ghost == NONE;
-    uint begin = is_inner ? 0u : bits(following, ghost);
     uint64_t cuts = 0ul;
     uint cut_count = 0u;
     uint left = degree;
-    uint c = begin;
-    for (uint step = 0u; step < 4u * MOST; step++) {
-        uint a = bits(end_of, bits(preceding, c));
-        uint b = bits(end_of, bits(following, c));
-        if (is_inner ? left == 3u : b == ghost) {
+    uint stays = (1u << degree) - 1u;
+    uint open = stays; // spokes to be tested
+    uint ears = 0u;
+    for (uint step = 0u; step < MOST && (!is_inner || left != 3u); step++) {
+        for (uint k = 0u; k < degree; k++) {
+            if ((open >> k & 1u) != 0u) {
+                uint a = bits(preceding, k);
+                uint b = bits(following, k);
+                bool is_ear = false;
+                if (k != ghost && a != ghost && b != ghost) {
+                    if (!is_decided_ear(at, where[bits(end_of, a)], where[bits(end_of, k)], where[bits(end_of, b)], is_ear)) {
+                        return false;
+                    }
+                }
+                ears = ears & ~(1u << k) | uint(is_ear) << k;
+            }
+        }
+        uint cut = 0u;
+        for (uint k = 0u; k < degree; k++) {
+            if ((ears >> k & 1u) != 0u) {
+                uint b = bits(following, k);
+                bool first = is_first(ears, k, bits(preceding, k)) && is_first(ears, k, b);
+                first = first && (!is_inner || left != 4u || is_first(ears, k, bits(following, b)));
+                cut |= uint(first) << k;
+            }
+        }
+        if (cut == 0u) {
             break;
         }
-        bool is_ear = false;
-        if (a != ghost && !is_decided_ear(at, where[a], where[bits(end_of, c)], where[b], is_ear)) {
-            return false;
+        open = 0u;
+        for (uint k = 0u; k < degree; k++) {
+            if ((cut >> k & 1u) != 0u) {
+                cuts |= uint64_t(k) << (4u * cut_count);
+                cut_count++;
+                stays &= ~(1u << bits(preceding, k));
+                drop_before(k);
+                left--;
+                open |= 1u << k | 1u << bits(following, k);
+            }
         }
-        if (is_ear) {
-            cuts |= uint64_t(c) << (4u * cut_count);
-            cut_count++;
-            drop_before(c);
-            left--;
-        } else {
-            c = bits(following, c);
-        }
+        open &= stays;
+        ears &= stays;
     }
     if (is_inner && left != 3u) {
         note_broken(words, v);
@@ -146,14 +174,13 @@ bool cut_small(uint v, uint degree, uint ghost) {
     }
 
     // Cut: the triangle before spoke c becomes an ear.
-    uint last = c;
     make_ring(degree);
     inside = 0u;
     for (uint k = 0u; k < degree; k++) {
         places[k] = next_edge(spokes[k]);
     }
     for (uint k = 0u; k < cut_count; k++) {
-        c = bits(cuts, k);
+        uint c = bits(cuts, k);
         uint h = spokes[c];
         uint g = prev_edge(spokes[bits(preceding, c)]);
         triangles.at[prev_edge(g)] = ends[bits(end_of, bits(following, c))];
@@ -166,7 +193,7 @@ bool cut_small(uint v, uint degree, uint ghost) {
         link(links, h, prev_edge(spokes[bits(preceding, c)]));
     }
 
-    c = last;
+    uint c = is_inner ? findLSB(stays) : bits(preceding, ghost);
     uint h = spokes[c];
     uint next = bits(following, c);
     uint previous = bits(preceding, c);
@@ -204,22 +231,26 @@ shared uint wide_spokes[MOST_SHARED];
 shared uint wide_ends[MOST_SHARED]; // of spokes by now
 shared uint wide_places[MOST_SHARED];
 shared uint wide_across[MOST_SHARED];
-shared uint wide_ring[MOST_SHARED]; // the next spoke, and in the upper half the previous one
+shared uint wide_next[MOST_SHARED];
+shared uint wide_previous[MOST_SHARED];
 shared uint wide_flags[MOST_SHARED];
 shared uint wide_degree;
 shared uint wide_ghost;
+shared uint wide_first;
+// Of even and of odd passes.
+shared uint wide_cuts[2];
 
 const uint EAR = 1u;
 const uint INSIDE = 2u;
+const uint OPEN = 4u; // to be tested
+const uint GONE = 8u;
+const uint CUT = 16u;
 
-uint wide_next(uint c) {
-    return wide_ring[c] & 0xffffu;
+bool is_wide_first(uint k, uint other) {
+    return (wide_flags[other] & EAR) == 0u || priority(wide_ends[k]) < priority(wide_ends[other]);
 }
 
-uint wide_previous(uint c) {
-    return wide_ring[c] >> 16;
-}
-
+// The outer edge of the triangle of spoke c goes to `to`.
 void place_wide(uint c, uint to) {
     links.at[to] = wide_across[c];
     if ((wide_flags[c] & INSIDE) != 0u) {
@@ -229,26 +260,44 @@ void place_wide(uint c, uint to) {
     }
 }
 
+// The spokes of a star into shared memory, by one invocation: both ways round at a time.
+void gather_star(uint start) {
+    uint h = start;
+    uint g = start;
+    uint ccw_count = 0u;
+    uint cw_count = 0u;
+    bool closed = false;
+    for (uint step = 0u; step < MOST_SHARED && !closed; step++) {
+        uint ccw = step == 0u ? start : rotate_ccw(links, h);
+        uint cw = rotate_cw(links, g);
+        if (ccw == g && step != 0u) {
+            closed = true;
+        } else if (ccw_count + cw_count == MOST_SHARED) {
+            break;
+        } else {
+            h = ccw;
+            wide_spokes[ccw_count++] = h;
+            if (cw == h) {
+                closed = true;
+            } else if (ccw_count + cw_count < MOST_SHARED) {
+                g = cw;
+                cw_count++;
+                wide_places[MOST_SHARED - cw_count] = g;
+            }
+        }
+    }
+    wide_degree = closed ? ccw_count + cw_count : NONE;
+    wide_first = ccw_count;
+}
+
 // By all invocations of the workgroup; or by none, if the star is larger than that.
 bool cut_wide(uint v, uint start) {
     uint rank = gl_LocalInvocationIndex;
     barrier();
     if (rank == 0u) {
-        uint degree = 0u;
-        uint ghost = NONE;
-        uint h = start;
-        bool closed = false;
-        for (uint first = 0u; first < MOST_SHARED && !closed; first += STEPS) {
-            [[unroll]] for (uint k = 0u; k < STEPS; k++) {
-                if (!closed) {
-                    wide_spokes[degree++] = h;
-                    h = rotate_ccw(links, h);
-                    closed = h == start;
-                }
-            }
-        }
-        wide_degree = closed ? degree : NONE;
+        gather_star(start);
         wide_ghost = NONE;
+        wide_cuts[0] = 0u;
     }
     barrier();
     uint degree = wide_degree;
@@ -256,14 +305,21 @@ bool cut_wide(uint v, uint start) {
         return false;
     }
     for (uint k = rank; k < degree; k += WORKGROUP) {
+        if (k >= wide_first) {
+            wide_spokes[k] = wide_places[MOST_SHARED - degree + k];
+        }
+    }
+    barrier();
+    for (uint k = rank; k < degree; k += WORKGROUP) {
         uint h = wide_spokes[k];
         uint end = destination(triangles, h);
         wide_ends[k] = end;
         wide_where[k] = positions.at[end < DELETED ? end : v];
         wide_across[k] = links.at[next_edge(h)];
         wide_places[k] = next_edge(h);
-        wide_ring[k] = (k + 1u == degree ? 0u : k + 1u) | (k == 0u ? degree - 1u : k - 1u) << 16;
-        wide_flags[k] = EAR;
+        wide_next[k] = k + 1u == degree ? 0u : k + 1u;
+        wide_previous[k] = k == 0u ? degree - 1u : k - 1u;
+        wide_flags[k] = OPEN;
         if (end == GHOST) {
             wide_ghost = k;
         }
@@ -273,68 +329,85 @@ bool cut_wide(uint v, uint start) {
     bool is_inner = ghost == NONE;
     uint heir = wide_ends[0];
     uvec4 at = positions.at[v];
-    uint c = is_inner ? 0u : wide_next(ghost);
     uint left = degree;
-    uint tests = degree;
-    bool ended = false;
-    for (uint cuts = 0u; cuts < degree; cuts++) {
-        // Two signs for each: a l b must be 1, and a b v not be -1.
-        for (uint i = rank; i < 2u * tests; i += WORKGROUP) {
-            uint k = tests > 2u ? i >> 1 : i < 2u ? c : wide_next(c);
-            uint a = wide_previous(k);
-            uint b = wide_next(k);
-            bool fails = a == ghost || b == ghost || k == ghost;
-            if (!fails) {
-                bool second = (i & 1u) != 0u;
-                int sign = orient2d(wide_where[a], wide_where[second ? b : k], second ? at : wide_where[b]);
-                fails = second ? sign == -1 : sign != 1;
-            }
-            if (fails) {
-                atomicAnd(wide_flags[k], ~EAR);
+    for (uint step = 0u; step < degree && (!is_inner || left != 3u); step++) {
+        for (uint k = rank; k < degree; k += WORKGROUP) {
+            if ((wide_flags[k] & (OPEN | GONE)) == OPEN) {
+                uint a = wide_previous[k];
+                uint b = wide_next[k];
+                bool is_ear = false;
+                if (k != ghost && a != ghost && b != ghost) {
+                    is_decided_ear(at, wide_where[a], wide_where[k], wide_where[b], is_ear);
+                }
+                wide_flags[k] = wide_flags[k] & INSIDE | (is_ear ? EAR : 0u);
             }
         }
         barrier();
-        for (uint step = 0u; step <= left && !ended; step++) {
-            ended = is_inner ? left == 3u : wide_next(c) == ghost;
-            if (ended || (wide_flags[c] & EAR) != 0u) {
-                break;
+        uint parity = step & 1u;
+        for (uint k = rank; k < degree; k += WORKGROUP) {
+            if ((wide_flags[k] & (EAR | GONE)) == EAR) {
+                uint b = wide_next[k];
+                bool first = is_wide_first(k, wide_previous[k]) && is_wide_first(k, b);
+                if (first && (!is_inner || left != 4u || is_wide_first(k, wide_next[b]))) {
+                    atomicOr(wide_flags[k], CUT);
+                    atomicAdd(wide_cuts[parity], 1u);
+                }
             }
-            c = wide_next(c);
         }
-        bool is_ear = !ended && (wide_flags[c] & EAR) != 0u;
+        if (rank == 0u) {
+            wide_cuts[parity ^ 1u] = 0u;
+        }
         barrier();
-        if (!is_ear) {
+        uint cuts = wide_cuts[parity];
+        if (cuts == 0u) {
             break;
         }
-        // The triangle before spoke c becomes an ear; the spoke gets the end of the one before, which leaves the ring.
-        if (rank == 0u) {
-            uint a = wide_previous(c);
-            uint h = wide_spokes[c];
-            uint g = prev_edge(wide_spokes[a]);
-            triangles.at[prev_edge(g)] = wide_ends[wide_next(c)];
-            triangles.at[prev_edge(h)] = wide_ends[a];
-            place_wide(c, g);
-            wide_across[c] = next_edge(g);
-            // To be tested again.
-            wide_flags[c] |= INSIDE | EAR;
-            wide_flags[wide_next(c)] |= EAR;
-            link(links, next_edge(h), next_edge(g));
-            wide_ends[c] = wide_ends[a];
-            wide_where[c] = wide_where[a];
-            uint before = wide_previous(a);
-            wide_ring[c] = wide_next(c) | before << 16;
-            wide_ring[before] = c | wide_previous(before) << 16;
-            link(links, h, prev_edge(wide_spokes[before]));
+        // The triangle before spoke c becomes an ear; the spoke gets the end of the one before, which leaves the ring. No
+        // spoke beside c is cut as well.
+        for (uint c = rank; c < degree; c += WORKGROUP) {
+            if ((wide_flags[c] & CUT) != 0u) {
+                uint a = wide_previous[c];
+                uint b = wide_next[c];
+                uint before = wide_previous[a];
+                uint h = wide_spokes[c];
+                uint g = prev_edge(wide_spokes[a]);
+                triangles.at[prev_edge(g)] = wide_ends[b];
+                triangles.at[prev_edge(h)] = wide_ends[a];
+                links.at[g] = wide_across[c];
+                if ((wide_flags[c] & INSIDE) != 0u) {
+                    links.at[wide_across[c]] = g;
+                } else {
+                    wide_places[c] = g;
+                }
+                wide_across[c] = next_edge(g);
+                link(links, next_edge(h), next_edge(g));
+                link(links, h, prev_edge(wide_spokes[before]));
+                wide_ends[c] = wide_ends[a];
+                wide_where[c] = wide_where[a];
+                wide_previous[c] = before;
+                wide_flags[a] = GONE | wide_flags[a] & INSIDE;
+            }
         }
-        left--;
-        tests = 2u;
+        barrier();
+        for (uint c = rank; c < degree; c += WORKGROUP) {
+            if ((wide_flags[c] & CUT) != 0u) {
+                wide_next[wide_previous[c]] = c;
+                wide_flags[c] = INSIDE | OPEN;
+                atomicOr(wide_flags[wide_next[c]], OPEN);
+            }
+        }
+        left -= cuts;
         barrier();
     }
     if (rank == 0u) {
+        uint c = is_inner ? 0u : wide_previous[ghost];
+        while (is_inner && c + 1u < degree && (wide_flags[c] & GONE) != 0u) {
+            c++;
+        }
         uint h = wide_spokes[c];
-        uint next = wide_next(c);
-        uint previous = wide_previous(c);
-        if (!ended) {
+        uint next = wide_next[c];
+        uint previous = wide_previous[c];
+        if (is_inner && left != 3u) {
             note_broken(words, v);
         } else if (is_inner) {
             triangles.at[next_edge(h)] = wide_ends[previous];
@@ -342,11 +415,11 @@ bool cut_wide(uint v, uint start) {
             place_wide(previous, h);
             free_two(v, wide_spokes[next] / 3u, wide_spokes[previous] / 3u);
         } else {
-            uint first = wide_next(next);
+            uint first = wide_next[next];
             uint spoke = first;
             for (uint k = 0u; k < degree && spoke != c; k++) {
                 triangles.at[next_edge(wide_spokes[spoke])] = GHOST;
-                spoke = wide_next(spoke);
+                spoke = wide_next[spoke];
             }
             place_wide(c, prev_edge(wide_spokes[previous]));
             place_wide(next, wide_spokes[first]);

@@ -9,7 +9,7 @@ layout(push_constant, std430) uniform Args {
     U32 state;
     U32 all;
     U32 stuck;
-    WriteU32 waits_for; // two words for each site
+    WriteU32 waits_for; // two words for each site: nobody, and no round
     U32 words;
 };
 
@@ -24,6 +24,7 @@ void main() {
         if (!is_free) {
             stuck.at[append(words, OUT_COUNTS)] = v;
             waits_for.at[2u * v] = NONE;
+            waits_for.at[2u * v + 1u] = 0u;
         }
     }
 }

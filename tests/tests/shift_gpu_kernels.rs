@@ -64,17 +64,27 @@ fn stuck(case: &Case) -> Stuck {
     Stuck { mesh, positions, state, sites }
 }
 
-/// The rounds of taking out: before each, what it starts from and whom it elects.
-fn each_round(case: &Case, mut look: impl FnMut(&Stuck, &takeout::Elected)) {
+/// Both turns of a round; the first's winners come first.
+fn elect(now: &Stuck) -> [takeout::Elected; 2] {
+    let mut beside = vec![false; now.state.len()];
+    let first = takeout::takeout_elect(&now.mesh, &now.state, &now.sites, &mut beside, false);
+    let second = takeout::takeout_elect(&now.mesh, &now.state, &first.later, &mut beside, true);
+    [first, second]
+}
+
+/// The rounds of taking out: before each, what it starts from and whom its turns elect.
+fn each_round(case: &Case, mut look: impl FnMut(&Stuck, &[takeout::Elected; 2])) {
     let mut now = stuck(case);
     while !now.sites.is_empty() {
-        let elected = takeout::takeout_elect(&now.mesh, &now.state, &now.sites);
+        let elected = elect(&now);
         look(&now, &elected);
-        if elected.chain {
+        if elected[0].chain {
             return;
         }
-        takeout::takeout_cut(&mut now.mesh, &now.positions, &mut now.state, &elected.winners).unwrap();
-        now.sites = elected.later;
+        let winners = [&elected[0].winners[..], &elected[1].winners].concat();
+        takeout::takeout_cut(&mut now.mesh, &now.positions, &mut now.state, &winners).unwrap();
+        let [_, second] = elected;
+        now.sites = second.later;
         let half_edges = now.mesh.half_edge_of_vertex(now.state.len());
         now.sites.iter().for_each(|&v| now.state[v as usize] = PINNED | half_edges[v as usize]);
     }
@@ -287,7 +297,7 @@ fn unpin_finish() {
         let count = device.gpu.fetch(counts.view())[Word::OutCounts as usize] as usize;
         assert_eq!(sorted(device.gpu.fetch(stuck.view())[..count].to_vec()), expected, "{}", case.name);
         let waits_for = device.gpu.fetch(waits_for.view());
-        assert!(expected.iter().all(|&v| waits_for[2 * v as usize] == NONE), "{}", case.name);
+        assert!(expected.iter().all(|&v| waits_for[2 * v as usize..][..2] == [NONE, 0]), "{}", case.name);
     }
 }
 
@@ -311,53 +321,69 @@ fn shift_advance() {
 #[test]
 fn takeout_elect() {
     let mut device = Device::open();
-    let (mut winners_in_all, mut chains) = (0, 0);
+    let (mut winners_in_all, mut chains) = ([0; 2], 0);
     for case in cases() {
         // Kept from round to round.
-        let waits_for = device.gpu.buffer(&vec![NONE; 2 * case.centers.len()]);
+        let waits_for = device.gpu.buffer(&[NONE, 0].repeat(case.centers.len()));
+        let mut rounds = 0;
         each_round(&case, |now, expected| {
             let held = device.hold(&now.mesh, &now.positions);
             let room = vec![7_u32; now.state.len()];
-            let [winners, later] = [0; 2].map(|_| device.gpu.buffer(&room));
+            let [winners, second] = [0; 2].map(|_| device.gpu.buffer(&room));
             let (states, waiting) = (device.gpu.buffer(&now.state), device.gpu.buffer(&now.sites));
-            let counts = device.gpu.buffer(&words(Word::OutCounts as usize, 2, now.sites.len()));
-            let arguments = TakeoutElectArgs {
-                triangles: held.mesh.corners(),
-                links: held.mesh.twins(),
-                state: states.view(),
-                waiting: waiting.view(),
-                later: later.view(),
-                winners: winners.view(),
-                waits_for: waits_for.view(),
-                words: counts.view(),
-                round: 2,
-            };
-            device.run::<TakeoutElect>(&arguments);
-            let counts = device.gpu.fetch(counts.view());
-            let found = takeout::Elected {
-                winners: sorted(device.gpu.fetch(winners.view())[..counts[192 + 2] as usize].to_vec()),
-                later: sorted(device.gpu.fetch(later.view())[..counts[Word::OutCounts as usize + 3] as usize].to_vec()),
-                chain: counts[Word::Chain as usize] == 3,
-            };
-            let [winners, later] = [&expected.winners, &expected.later].map(|list| sorted(list.clone()));
-            winners_in_all += winners.len();
-            chains += usize::from(expected.chain);
-            assert_eq!(found, takeout::Elected { winners, later, chain: expected.chain }, "{}", case.name);
+            let mut counts = words(Word::OutCounts as usize, 2, now.sites.len());
+            counts[Word::OutRounds as usize] = rounds;
+            rounds += 1;
+            let counts = device.gpu.buffer(&counts);
+            let mut before = 0;
+            for (turn, [from, to], next) in [(0, [&waiting, &second], 288 + 2), (1, [&second, &waiting], 160 + 3)] {
+                let arguments = TakeoutElectArgs {
+                    triangles: held.mesh.corners(),
+                    links: held.mesh.twins(),
+                    state: states.view(),
+                    waiting: from.view(),
+                    later: to.view(),
+                    winners: winners.view(),
+                    waits_for: waits_for.view(),
+                    words: counts.view(),
+                    round: 2,
+                    turn,
+                };
+                device.run::<TakeoutElect>(&arguments);
+                let counts = device.gpu.fetch(counts.view());
+                let end = counts[192 + 2] as usize;
+                let found = takeout::Elected {
+                    winners: sorted(device.gpu.fetch(winners.view())[before..end].to_vec()),
+                    later: sorted(device.gpu.fetch(to.view())[..counts[next] as usize].to_vec()),
+                    chain: turn == 0 && counts[Word::Chain as usize] == 3,
+                };
+                before = end;
+                let expected = &expected[turn as usize];
+                let [winners, later] = [&expected.winners, &expected.later].map(|list| sorted(list.clone()));
+                winners_in_all[turn as usize] += winners.len();
+                assert_eq!(found, takeout::Elected { winners, later, chain: expected.chain }, "{}", case.name);
+                if expected.chain {
+                    // There is no second turn.
+                    chains += 1;
+                    break;
+                }
+            }
         });
     }
-    assert!(winners_in_all > 500 && chains > 0, "{winners_in_all} {chains}");
+    assert!(winners_in_all[0] > 500 && winners_in_all[1] > 50 && chains > 0, "{winners_in_all:?} {chains}");
 }
 
 /// A hub in the middle of so many vertices on a circle, to be taken out.
-fn hub(spokes: u32) -> (Stuck, takeout::Elected) {
+fn hub(spokes: u32) -> (Stuck, [takeout::Elected; 2]) {
     let on_circle = |i| glam::DVec2::from_angle(std::f64::consts::TAU * f64::from(i) / f64::from(spokes));
     let positions: Vec<_> = std::iter::once(glam::DVec2::ZERO).chain((0..spokes).map(on_circle)).collect();
     let (mut mesh, _) = polder_flip::reference::sweep(&positions).unwrap();
     polder_flip::reference::flip(&mut mesh, &positions).unwrap();
     let mut state: Vec<u32> = (0..=spokes).collect();
     state[0] = PINNED | mesh.half_edge_of_vertex(1)[0];
-    let elected = takeout::takeout_elect(&mesh, &state, &[0]);
-    (Stuck { mesh, positions, state, sites: vec![0] }, elected)
+    let now = Stuck { mesh, positions, state, sites: vec![0] };
+    let elected = elect(&now);
+    (now, elected)
 }
 
 /// Cutting and linking, which give a mesh together.
@@ -365,7 +391,7 @@ fn cut_and_link(only_cut: bool) {
     let mut device = Device::open();
     for spokes in [3, 15, 16, 17, 40, 383, 384, 385, 1000] {
         let (now, elected) = hub(spokes);
-        assert_eq!(elected.winners.len(), 1);
+        assert_eq!(elected[0].winners.len(), 1);
         cut_and_link_round(&mut device, "hub", only_cut, &now, &elected);
     }
     for case in cases() {
@@ -373,18 +399,19 @@ fn cut_and_link(only_cut: bool) {
     }
 }
 
-fn cut_and_link_round(device: &mut Device, name: &str, only_cut: bool, now: &Stuck, elected: &takeout::Elected) {
+fn cut_and_link_round(device: &mut Device, name: &str, only_cut: bool, now: &Stuck, elected: &[takeout::Elected; 2]) {
+    let elected = [&elected[0].winners[..], &elected[1].winners].concat();
     // By the filter first, or by workgroups alone; and without f64.
     for (arithmetic, few) in [(Arithmetic::Filtered, 0), (Arithmetic::Filtered, 1024), (Arithmetic::Integers, 0)] {
         let held = device.hold(&now.mesh, &now.positions);
         let (sites, slots) = (now.state.len(), now.mesh.slots());
         let states = device.gpu.buffer(&now.state);
-        let mut winners = elected.winners.clone();
+        let mut winners = elected.clone();
         winners.push(7);
         let (winners, deferred) = (device.gpu.buffer(&winners), device.gpu.buffer(&vec![7_u32; sites]));
         let freed = device.gpu.buffer(&vec![[NONE; 2]; sites]);
         let (edge_of, edges) = (device.gpu.buffer(&vec![7_u32; slots]), device.gpu.buffer(&vec![[7_u32; 2]; slots]));
-        let counts = device.gpu.buffer(&words(192, 1, elected.winners.len()));
+        let counts = device.gpu.buffer(&words(192, 1, elected.len()));
         let cut = TakeoutCutArgs {
             triangles: held.mesh.corners(),
             links: held.mesh.twins(),
@@ -401,7 +428,7 @@ fn cut_and_link_round(device: &mut Device, name: &str, only_cut: bool, now: &Stu
         };
         device.run_both::<TakeoutCut>(arithmetic, few, &cut, &TakeoutCutArgs { again: 1, ..cut });
         let (mut mesh, mut state) = (now.mesh.clone(), now.state.clone());
-        let expected = takeout::takeout_cut(&mut mesh, &now.positions, &mut state, &elected.winners).unwrap();
+        let expected = takeout::takeout_cut(&mut mesh, &now.positions, &mut state, &elected).unwrap();
         let found = device.gpu.fetch(freed.view());
         assert!(expected.iter().all(|&(v, slots)| found[v as usize] == slots), "{}", name);
         assert_eq!(device.gpu.fetch(states.view()), state, "{}", name);
@@ -498,5 +525,5 @@ fn takeout_heirs() {
 #[test]
 fn rows_do_not_overlap() {
     let rows = [Word::PinCounts, Word::UnpinCounts, Word::OutCounts].map(|word| word as usize);
-    assert_eq!((rows, WORDS), ([ROW, 3 * ROW, 5 * ROW], 9 * ROW));
+    assert_eq!((rows, WORDS), ([ROW, 3 * ROW, 5 * ROW], 10 * ROW));
 }

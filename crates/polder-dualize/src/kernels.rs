@@ -927,7 +927,7 @@ impl Shader for PinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "fdcd366b19fc5696d2d8d5485235a3a444751bf749aaeadd3bd452a2d6e97b78",
+        source_hash: "ee9a91097948bf8beacfbc43b46b4e6f6fcd86e08bbaa576d4cb7eabfbd47900",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1013,7 +1013,7 @@ impl Shader for PinTriangles {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "43e09c2120a1ffbab913ee7cb3a10c833a86155fabcc599c92dacfe3c8ca50ba",
+        source_hash: "51389142966dc9000351b1420c54245d930cd9a0d2f33c29cef77cad905bccdb",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1136,7 +1136,7 @@ impl Shader for ShiftAdvance {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "91e7f5951985698632f5a08031bcff3dfe24a785264d5b86fa6d866d692cab39",
+        source_hash: "cf1cbf41ee4882f4e7dbdda4e600e4f1cf2a61c665904f136b80526740b29675",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1189,7 +1189,7 @@ impl Shader for ShiftMove {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "086abf3f506d63ad2c5de69e31f7f56dcb46ea65dbeb2b4a4021e7c9998a81fd",
+        source_hash: "67279391da74a8e163b9f977ffe6f94086de6a9152dd0af4405041d46f0a39df",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1207,9 +1207,10 @@ impl Shader for ShiftMove {
 /// Take out: cuts ears off the star of each site that goes, and merges what is left, or moves the site to infinity if it is
 /// on the hull. Nothing outside the star is touched; where its outer edges have gone is noted.
 ///
-/// The filter takes small stars, each by one invocation: it reads all of one, decides on all cuts, and then writes. Where it
-/// is undecided, or the star is large, the other kernel takes the star by a workgroup, which tests all ears at once, and
-/// after each cut those two that it changed. Stars larger than shared memory are cut step by step in the mesh.
+/// Ears are cut in passes, in each all that have no ear beside them of lower priority: `pass` of the reference. The filter
+/// takes small stars, each by one invocation: it reads all of one, decides on all cuts, and then writes. Where it is
+/// undecided, or the star is large, the other kernel takes the star by a workgroup, an invocation for each spoke. Stars larger
+/// than shared memory are cut step by step in the mesh: `scan` of the reference.
 #[derive(Debug, Clone, Copy)]
 pub enum TakeoutCut {}
 
@@ -1277,7 +1278,7 @@ impl Shader for TakeoutCut {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "e95ac1fab680bcdbfda4ab5338d1037b77b9b53a313d111635eba2eb64b7b1a5",
+        source_hash: "f1d7800c73d1abca41255487dc05f35e2af00e91b4935c50cbc46eff62187d0d",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1297,8 +1298,9 @@ impl Shader for TakeoutCut {
     }
 }
 
-/// Take out: finds the pinned sites that go in this round, those without a pinned neighbor of lower priority; each with the
-/// half-edge to its heir. The others wait, and remember whom for: neighbors stay neighbors until one of them goes.
+/// Take out: finds the pinned sites that go in this round, each with the half-edge to its heir. In the first turn those
+/// without a pinned neighbor of lower priority; they tell their pinned neighbors. Those who were told nothing have a second
+/// turn among each other. The others wait, and remember whom for: neighbors stay neighbors until one of them goes.
 #[derive(Debug, Clone, Copy)]
 pub enum TakeoutElect {}
 
@@ -1323,6 +1325,8 @@ pub struct TakeoutElectArgs<'a> {
     pub words: View<'a, u32>,
     /// a value
     pub round: u32,
+    /// a value
+    pub turn: u32,
 }
 
 impl Shader for TakeoutElect {
@@ -1332,7 +1336,7 @@ impl Shader for TakeoutElect {
         name: "takeout_elect",
         words: include_spirv!("../spv/takeout_elect.spv"),
         without_float64: None,
-        argument_bytes: 68,
+        argument_bytes: 72,
         buffers: &[
             BufferArgument { name: "triangles", offset: 0, access: Access::Read },
             BufferArgument { name: "links", offset: 8, access: Access::Read },
@@ -1346,7 +1350,7 @@ impl Shader for TakeoutElect {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "b82298cb303c0cf56e186804d743f28edb6b1f49fad5c6be7029b2ea89f28c2a",
+        source_hash: "35a8235620d719b6c562d2363c476a2c820ab00d36b7da7f550fd556d5a72143",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1360,6 +1364,7 @@ impl Shader for TakeoutElect {
         encoder.buffer(48, args.waits_for);
         encoder.buffer(56, args.words);
         encoder.value(64, args.round);
+        encoder.value(68, args.turn);
     }
 }
 
@@ -1415,7 +1420,7 @@ impl Shader for TakeoutHeirs {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "ac9c5f6828571883cc99cc6ac689c9479c8598d28920fb274df22438dd44fee4",
+        source_hash: "ac06f2a07b44a7c8ade8185fe1cff98a4348d51c3c8c5e3086bbe5980c48764d",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1476,7 +1481,7 @@ impl Shader for TakeoutLink {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "eb18a50b944aee44bf890f1ac72d0287fb0fe7248acc016c367e151c577b60ee",
+        source_hash: "15f2b86b7314220cff2c30d52c2aed4b62e21fafbd1106f33c82078517a5d23c",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1532,7 +1537,7 @@ impl Shader for UnpinFinish {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 128 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "9f6c0952f2135cb31281485a4f9280830f4f225c2ef80c302c05497cc4b97d1a",
+        source_hash: "949669e14f7abcec82ad9d511503486319423963499fe21ebc285cbfa3b91e00",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1616,7 +1621,7 @@ impl Shader for UnpinStars {
             "PhysicalStorageBufferAddresses",
             "Shader",
         ],
-        source_hash: "ea1a44aa502fa1caeaa727db48fef643c558c468c05aa1b5929898d7c85f138b",
+        source_hash: "0c1dee792d9d7c81ddb5f5a44f11361db3c8e32f9145cbfd2b4c4f30e75afb8e",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

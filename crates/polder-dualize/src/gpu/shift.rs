@@ -7,7 +7,7 @@
 //!    waits; the rounds in which sites were tried are kept, so that finding and trying are one kernel.
 //! 3. *Close.* `polder-flip` closes the hull. Ghost flips leave finite triangles as they are, and so the half-edges of
 //!    pinned sites stay theirs. The first step has listed the ghost's edges.
-//! 4. *Take out*, in rounds of three steps: find the sites that go; cut their stars, each within its own triangles; link
+//! 4. *Take out*, in rounds of three steps: find the sites that go, in two turns; cut their stars, each within its own triangles; link
 //!    the stars' outer edges to what is across. See [`reference`](mod@crate::reference). Many small stars are cut by one
 //!    invocation each, which reads all of a star, decides by the f64 filter alone, and then writes; few or large ones, and
 //!    what the filter leaves open, by a workgroup each, in shared memory.
@@ -32,10 +32,11 @@ use polder_vulkan::{Device, DeviceKind, Error, Estimate, Kernel, Recording, View
 
 pub use super::shift_buffers::{Buffers, Counts, Read};
 
-/// Rounds of a batch: even where two lists change places.
-pub(super) const PIN_ROUNDS: u32 = 4;
-pub(super) const UNPIN_ROUNDS: u32 = 10;
-pub(super) const OUT_ROUNDS: u32 = 6;
+/// Rounds of a batch: even where two lists change places. Rings pin in 3 to 8 rounds and unpin in 15; what is left to do
+/// after a batch costs more than an empty round, since all that follows has to be sent again.
+pub(super) const PIN_ROUNDS: u32 = 8;
+pub(super) const UNPIN_ROUNDS: u32 = 16;
+pub(super) const OUT_ROUNDS: u32 = 4;
 /// Workgroups of a wide kernel, whose invocations stride over their items.
 const WIDE: u32 = 2112;
 /// Stars that are cut by workgroups at a time.

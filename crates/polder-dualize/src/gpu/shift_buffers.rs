@@ -5,7 +5,7 @@ use crate::DualizeError;
 use polder_flip::gpu::Mesh;
 use polder_vulkan::{Buffer, Device, Error, Estimate, Pool, ReadBack, Recording, RunReport, View};
 
-const WORDS: usize = 288;
+const WORDS: usize = 320;
 /// Words of the ring of a site.
 const NEIGHBORS: usize = 8;
 

@@ -24,13 +24,25 @@ impl Stage {
         let (triangles, links) = (mesh.corners(), mesh.twins());
         let (edge_of, edges) = (buffers.edge_of.view(), buffers.edges.view());
         let bound = buffers.sites as u32;
-        recording.repeat_ahead("taking out", buffers.word(Word::OutLeft)?, bound, 1, 5, |body| {
+        recording.repeat_ahead("taking out", buffers.word(Word::OutLeft)?, bound, 1, 3, |body| {
             for round in 0..OUT_ROUNDS {
-                let [waiting, later] = buffers.lists(round);
+                let [waiting, second] = buffers.lists(0);
                 let waits_for = buffers.freed.view().cast();
-                let arguments =
-                    TakeoutElectArgs { triangles, links, state, waiting, later, winners, waits_for, words, round };
-                body.dispatch(&self.elect, self.groups, &arguments);
+                for (turn, waiting, later) in [(0, waiting, second), (1, second, waiting)] {
+                    let arguments = TakeoutElectArgs {
+                        triangles,
+                        links,
+                        state,
+                        waiting,
+                        later,
+                        winners,
+                        waits_for,
+                        words,
+                        round,
+                        turn,
+                    };
+                    body.dispatch(&self.elect, self.groups, &arguments);
+                }
                 let arguments = TakeoutCutArgs {
                     triangles,
                     links,
@@ -38,7 +50,7 @@ impl Stage {
                     state,
                     winners,
                     // Nobody reads it any more in this round.
-                    deferred: waiting,
+                    deferred: second,
                     freed: buffers.freed.view().cast(),
                     edge_of,
                     edges,

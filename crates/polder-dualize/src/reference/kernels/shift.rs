@@ -42,7 +42,7 @@ pub enum Word {
 }
 
 /// How many words there are.
-pub const WORDS: usize = 288;
+pub const WORDS: usize = 320;
 
 /// The true positions of all points in the new order, and the state of each site.
 pub fn shift_move(points: &[DVec2], order: &[u32], sites: usize) -> (Vec<DVec2>, Vec<u32>) {
@@ -174,7 +174,7 @@ pub fn shift_advance(words: &mut [u32], slots: &mut u32, phase: u32, rounds: u32
     if phase == 2 && words[Word::OutRounds as usize] == 0 {
         words[Word::Stuck as usize] = row[0];
     }
-    words[counts..counts + if phase == 2 { 4 } else { 1 } * ROW].fill(0);
+    words[counts..counts + if phase == 2 { 5 } else { 1 } * ROW].fill(0);
     words[counts] = left;
     match phase {
         0 => {

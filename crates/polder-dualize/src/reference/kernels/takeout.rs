@@ -19,20 +19,37 @@ pub struct Elected {
     pub chain: bool,
 }
 
-/// Which of the pinned sites `waiting` go in this round.
-pub fn takeout_elect(mesh: &GhostMesh, state: &[u32], waiting: &[u32]) -> Elected {
+/// Which of the pinned sites `waiting` go in this round. In the first turn those that have no pinned neighbor of lower
+/// priority; then `beside` says who has one of them as a neighbor. The second turn decides on those who have none, among
+/// each other.
+pub fn takeout_elect(
+    mesh: &GhostMesh,
+    state: &[u32],
+    waiting: &[u32],
+    beside: &mut [bool],
+    second_turn: bool,
+) -> Elected {
     let mut out = Elected::default();
+    if !second_turn {
+        beside.fill(false);
+    }
     let is_pinned = |u: u32| state[u as usize] & PINNED != 0;
     for &v in waiting {
         let spokes: Vec<u32> = star(mesh, state[v as usize] & !PINNED).collect();
         let neighbors = || spokes.iter().copied().filter(|&h| mesh.destination(h) < DELETED);
-        if neighbors().map(|h| mesh.destination(h)).any(|u| is_pinned(u) && priority(u) < priority(v)) {
+        let is_open = |u: u32| is_pinned(u) && !(second_turn && beside[u as usize]);
+        if !is_open(v) || neighbors().map(|h| mesh.destination(h)).any(|u| is_open(u) && priority(u) < priority(v)) {
             out.later.push(v);
         } else if spokes.iter().all(|&h| mesh.is_ghost((h / 3) as usize)) {
             out.chain = true;
         } else {
             let rank = |u: u32| (is_pinned(u), u);
             out.winners.extend(neighbors().min_by_key(|&h| rank(mesh.destination(h))));
+        }
+    }
+    if !second_turn {
+        for &h in &out.winners {
+            star(mesh, h).map(|h| mesh.destination(h)).filter(|&u| u < DELETED).for_each(|u| beside[u as usize] = true);
         }
     }
     out
