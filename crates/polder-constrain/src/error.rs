@@ -34,6 +34,14 @@ pub enum ConstrainError {
         /// The most that are possible.
         limit: usize,
     },
+    /// More sub-constraints than can be told apart in the word of a triangle.
+    #[error("{count} sub-constraints; at most {limit} are possible")]
+    TooMany {
+        /// How many there are.
+        count: usize,
+        /// The most that are possible.
+        limit: usize,
+    },
     /// Constraints cross each other where no vertex is.
     #[error("{}", describe(.0))]
     CrossingConstraints(Crossings),

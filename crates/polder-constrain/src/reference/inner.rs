@@ -10,8 +10,7 @@
 //!    - in case 3, if it is a double one, (B, A) is concave, and B and what would then come after it were not.
 //!
 //!    A flippable pair claims A and C, in cases 2 and 3 also B, for the lowest case and, of the same case, the least
-//!    priority of A. (Where only claims of 32 bits are at hand: one pass a case, each leaving alone what a pass before
-//!    has taken.)
+//!    priority of A.
 //! 3. Pairs that got all they claimed are flipped. The sides of the corners stay known, so that no test is needed to see
 //!    which of the new triangles the owner crosses; the others are nobody's from then on.
 //! 4. Listed for the next round are the triangles of flips and their neighbors, and the A of pairs that were not flipped.
@@ -26,7 +25,8 @@
 
 use super::configuration::{Configuration, Side, configuration};
 use super::insert::Insertion;
-use polder_flip::priority;
+use super::keys::claim_key;
+use super::place::{self, FREE};
 use polder_mesh::{NONE, twin_code};
 
 /// Rules other than the stage's own.
@@ -54,7 +54,7 @@ pub(super) struct Inner {
     /// For each triangle A the configuration of (A, C), if it has one in this round.
     configurations: Vec<Option<Configuration>>,
     /// For each triangle the least claim, the highest number between rounds.
-    claims: Vec<u64>,
+    claims: Vec<u32>,
     candidates: Vec<Candidate>,
     /// The triangles A to look at in the next round, and whether a triangle is one of them.
     work: Vec<u32>,
@@ -62,7 +62,7 @@ pub(super) struct Inner {
     pub(super) trial: Trial,
 }
 
-const UNCLAIMED: u64 = u64::MAX;
+const UNCLAIMED: u32 = u32::MAX;
 
 impl Inner {
     pub(super) fn new(slots: usize) -> Self {
@@ -78,21 +78,20 @@ impl Inner {
 }
 
 impl Candidate {
-    fn key(&self) -> u64 {
-        u64::from(self.case) << 32 | u64::from(priority(self.h / 3))
+    fn key(&self) -> u32 {
+        claim_key(self.case, self.h / 3)
     }
 }
 
 impl Insertion<'_> {
-    /// One inner round; gives the number of flips.
+    /// One inner round; gives the number of flips. One without a flip does not count.
     pub fn inner_round(&mut self) -> u64 {
-        self.report.inner_rounds += 1;
         let mut work = std::mem::take(&mut self.inner.work);
         for &t in &work {
             self.inner.listed[t as usize] = false;
         }
         // Step 1.
-        work.retain(|&t| self.owner[t as usize] != NONE);
+        work.retain(|&t| self.owner[t as usize] != FREE);
         for &t in &work {
             self.inner.configurations[t as usize] = self.next_pair(t as usize).map(|(_, c)| c);
         }
@@ -130,6 +129,7 @@ impl Insertion<'_> {
             self.report.flips[usize::from(winner.case - 1)] += 1;
         }
         self.inner.candidates = candidates;
+        self.report.inner_rounds += u64::from(!winners.is_empty());
         winners.len() as u64
     }
 
@@ -143,7 +143,7 @@ impl Insertion<'_> {
     pub(super) fn touch(&mut self, t: u32) {
         self.list(t);
         for h in self.mesh.links[t as usize] {
-            if self.owner[(h / 3) as usize] != NONE {
+            if self.owner[(h / 3) as usize] != FREE {
                 self.list(h / 3);
             }
         }
@@ -153,23 +153,16 @@ impl Insertion<'_> {
         [c.h / 3, self.mesh.twin(c.h) / 3, c.b].into_iter().filter(|&t| t != NONE)
     }
 
-    /// The half-edge by which the owner comes into a triangle, or goes out of it.
-    fn gate(&self, t: usize, outward: bool) -> Option<u32> {
-        let sides = self.sides[t];
-        let (from, to) = if outward { (-1, 1) } else { (1, -1) };
-        (0..3).find(|k| sides[(k + 1) % 3] == from && sides[(k + 2) % 3] == to).map(|k| (3 * t + k) as u32)
-    }
-
+    /// The corner opposite the edge where the owner of its triangle comes in or goes out.
     fn corner(&self, h: u32) -> (u32, Side) {
-        let (t, k) = twin_code(h);
-        (self.mesh.triangles[t][k], self.sides[t][k])
+        (self.mesh.apex(h), place::side(self.owner[(h / 3) as usize]))
     }
 
     /// The half-edge from A to C and the configuration of the two, if C has the same owner.
     fn next_pair(&self, a: usize) -> Option<(u32, Configuration)> {
-        let h = self.gate(a, true)?;
+        let h = 3 * a as u32 + place::outward(self.owner[a])?;
         let g = self.mesh.twin(h);
-        if self.owner[(g / 3) as usize] != self.owner[a] {
+        if !place::same_owner(self.owner[a], self.owner[(g / 3) as usize]) {
             return None;
         }
         let ends = [self.mesh.origin(h), self.mesh.destination(h)];
@@ -178,16 +171,16 @@ impl Insertion<'_> {
 
     fn candidate(&self, a: usize) -> Option<Candidate> {
         let own = self.inner.configurations[a]?;
-        let h = self.gate(a, true)?;
+        let h = 3 * a as u32 + place::outward(self.owner[a])?;
         match own {
             Configuration::Zero | Configuration::Single => return Some(Candidate { h, b: NONE, case: 1 }),
             Configuration::Concave => return None,
             Configuration::Double if self.inner.trial.blind => return Some(Candidate { h, b: NONE, case: 1 }),
             Configuration::Double => {}
         }
-        let entry = self.mesh.twin(self.gate(a, false)?);
+        let entry = self.mesh.twin(3 * a as u32 + place::inward(self.owner[a])?);
         let b = entry / 3;
-        if self.owner[b as usize] != self.owner[a] {
+        if !place::same_owner(self.owner[a], self.owner[b as usize]) {
             return None;
         }
         let before = self.inner.configurations[b as usize]?;
@@ -211,23 +204,17 @@ impl Insertion<'_> {
         let ((near, near_side), (far, far_side)) = (self.corner(h), self.corner(g));
         let diagonal = self.mesh.flip(h);
         let ((t, k), (u, j)) = (twin_code(h), twin_code(g));
+        let Some(s) = place::owner(self.owner[t]) else { return };
         // Corners from k on: near, right, far in t; far, left, near in u.
-        for (i, side) in [near_side, -1, far_side].into_iter().enumerate() {
-            self.sides[t][(k + i) % 3] = side;
+        for (slot, k, [from_k, then, last]) in [(t, k, [near_side, -1, far_side]), (u, j, [far_side, 1, near_side])] {
+            let mut sides = [0; 3];
+            (sides[k], sides[(k + 1) % 3], sides[(k + 2) % 3]) = (from_k, then, last);
+            self.owner[slot] = place::word(s, sides);
+            self.owned[s as usize] -= u32::from(self.owner[slot] == FREE);
         }
-        for (i, side) in [far_side, 1, near_side].into_iter().enumerate() {
-            self.sides[u][(j + i) % 3] = side;
-        }
-        let s = self.owner[t];
         if near_side == 0 && far_side == 0 {
             self.mesh.set_constrained(diagonal, true);
             self.remaining -= 1;
-        }
-        for (slot, across) in [(t, 1), (u, -1)] {
-            if near_side != across && far_side != across {
-                self.owner[slot] = NONE;
-                self.owned[s as usize] -= 1;
-            }
         }
         self.touch(t as u32);
         self.touch(u as u32);

@@ -5,9 +5,10 @@
 //! 1. Each sub-constraint that does not own its whole chain yet leaves the star of one of its ends. If it is an edge, it
 //!    becomes a constrained one and is done.
 //! 2. The others walk and claim each triangle that they cross; of all that claim it, the sub-constraint with the least
-//!    [`priority`] owns it, and the triangle remembers on which side of its owner each corner lies.
+//!    priority owns it, and the triangle remembers by which edges its owner comes in and goes out (see the module `place`).
 //! 3. A sub-constraint that owns its whole chain has walked for the last time.
-//! 4. A few inner rounds flip pairs of triangles with the same owner (see the module `inner`).
+//! 4. A few inner rounds flip pairs of triangles with the same owner (see the module `inner`). If each that is not in yet
+//!    owns its whole chain, these go on to the end.
 //!
 //! The sub-constraint with the least priority owns its whole chain, so that it is inserted by inner rounds alone (\[QCT\]
 //! Claim 1), and every outer round flips or inserts something: a round that does neither ends the loop with an error, as
@@ -30,9 +31,10 @@
 use super::configuration::Side;
 use super::fan::{Departure, depart_by_turning, enter, leave};
 use super::inner::{Inner, Trial};
+use super::keys::OWNER_BITS;
+use super::place::{self, FREE};
 use crate::{ConstrainError, InsertReport};
 use glam::DVec2;
-use polder_flip::priority;
 use polder_mesh::{GhostMesh, NONE, twin_code};
 use polder_predicates::Sign;
 
@@ -52,6 +54,9 @@ use polder_predicates::Sign;
 /// An outer round walks, which is the part that is hard to divide among threads: 8 has nearly the fewest of them, and
 /// nearly the fewest rounds in all. On one thread 2 to 8 take the same time.
 pub const INNER_ROUNDS: u32 = 8;
+
+/// So many sub-constraints can be told apart in the word of a triangle.
+pub const MOST_SUB_CONSTRAINTS: usize = 1 << OWNER_BITS;
 
 /// Makes each sub-constraint a constrained edge of the mesh, by flips.
 ///
@@ -88,10 +93,8 @@ pub struct Insertion<'a> {
     waiting: Vec<u32>,
     /// How many are not in yet.
     pub(super) remaining: usize,
-    /// For each triangle the sub-constraint that owns it, or [`NONE`].
+    /// For each triangle the word that says who owns it, or [`FREE`].
     pub(super) owner: Vec<u32>,
-    /// For each corner of each owned triangle its side of the owner.
-    pub(super) sides: Vec<[Side; 3]>,
     /// For each sub-constraint how many triangles it owns.
     pub(super) owned: Vec<u32>,
     /// For each vertex a half-edge that begins there, and how many do.
@@ -129,14 +132,17 @@ impl<'a> Insertion<'a> {
             }
         }
         let slots = mesh.slots();
+        if sub_constraints.len() > MOST_SUB_CONSTRAINTS {
+            let count = sub_constraints.len();
+            return Err(ConstrainError::TooMany { count, limit: MOST_SUB_CONSTRAINTS });
+        }
         Ok(Self {
             mesh,
             positions,
             sub_constraints,
             waiting: (0..sub_constraints.len() as u32).collect(),
             remaining: sub_constraints.len(),
-            owner: vec![NONE; slots],
-            sides: vec![[0; 3]; slots],
+            owner: vec![FREE; slots],
             owned: vec![0; sub_constraints.len()],
             spokes,
             degrees,
@@ -182,7 +188,8 @@ impl<'a> Insertion<'a> {
     pub fn outer_round(&mut self) -> Result<(), ConstrainError> {
         let before = (self.report.all_flips(), self.remaining);
         self.mark()?;
-        for _ in 0..self.inner_rounds {
+        let most = if self.waiting.is_empty() { self.bound } else { self.inner_rounds.into() };
+        for _ in 0..most {
             if self.inner_round() == 0 {
                 break;
             }
@@ -231,7 +238,7 @@ impl<'a> Insertion<'a> {
         if self.report.outer_rounds == 0 {
             self.report.intersections = lengths.iter().sum();
             // No family of inputs is known to need a tenth of this: chains grow shorter side by side.
-            self.bound = 64 + 4 * (self.report.intersections + self.sub_constraints.len() as u64);
+            self.bound = 64 + 8 * (self.report.intersections + self.sub_constraints.len() as u64);
         }
         self.report.walked += lengths.iter().sum::<u64>();
         self.report.outer_rounds += 1;
@@ -283,16 +290,16 @@ impl<'a> Insertion<'a> {
     }
 
     fn own(&mut self, s: u32, t: usize, sides: [Side; 3]) {
-        let owner = self.owner[t];
-        if owner == s || (owner != NONE && priority(owner) < priority(s)) {
+        let word = place::word(s, sides);
+        let before = place::owner(self.owner[t]);
+        if before == Some(s) || word > self.owner[t] {
             return;
         }
-        if owner != NONE {
+        if let Some(owner) = before {
             self.owned[owner as usize] -= 1;
         }
         self.owned[s as usize] += 1;
-        self.owner[t] = s;
-        self.sides[t] = sides;
+        self.owner[t] = word;
         self.touch(t as u32);
     }
 }

@@ -25,14 +25,17 @@ mod inner;
 mod insert;
 mod intersection;
 pub mod kernels;
+mod keys;
+mod place;
 mod walk;
 
 pub use configuration::{Configuration, TriangleChain, triangle_chain};
 pub use crossings::crossings;
 #[doc(hidden)]
 pub use inner::Trial;
-pub use insert::{INNER_ROUNDS, Insertion, insert};
+pub use insert::{INNER_ROUNDS, Insertion, MOST_SUB_CONSTRAINTS, insert};
 pub use intersection::intersection;
+pub use keys::{claim_key, owner_of, owner_priority};
 pub use walk::walk;
 
 use crate::{ConstrainError, InsertReport, Walk};
