@@ -9,7 +9,7 @@ use super::configuration::Side;
 use super::keys::{owner_of, owner_priority};
 
 /// The word of a triangle that nobody owns.
-pub const FREE: u32 = u32::MAX;
+pub(super) const FREE: u32 = u32::MAX;
 /// No edge.
 const NO_EDGE: u32 = 3;
 
