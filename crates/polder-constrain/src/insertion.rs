@@ -37,3 +37,16 @@ impl fmt::Display for InsertReport {
         write!(f, "{} inner rounds, flips {one} + {two} + {three}", self.inner_rounds)
     }
 }
+
+/// Why an insertion came to no good end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Fault {
+    /// The lowest sub-constraint, of those that came so far, that met a constrained edge.
+    Blocked(u32),
+    /// The lowest one that ran through a vertex.
+    ThroughVertex(u32),
+    /// The lowest one whose walk left the mesh: that is not a triangulation of a convex hull.
+    Lost(u32),
+    /// A round changed nothing: the mesh was not a triangulation.
+    Stuck,
+}

@@ -2,6 +2,241 @@
 
 use polder_vulkan::{Access, BufferArgument, Code, Constant, Encoder, Shader, Side, View, include_spirv};
 
+/// The end of an inner round and the beginning of the next in one: renews the links around all flips, gives claimed triangles
+/// back, and looks at the triangles around flips, which claim what they need for the next round.
+#[derive(Debug, Clone, Copy)]
+pub enum AdvancePairs {}
+
+/// Arguments of [`AdvancePairs`].
+#[derive(Debug, Clone, Copy)]
+pub struct AdvancePairsArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub owner: View<'a, u32>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read and written
+    pub pairs: View<'a, [u32; 2]>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub stride: u32,
+}
+
+impl Shader for AdvancePairs {
+    type Args<'a> = AdvancePairsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "advance_pairs",
+        words: include_spirv!("../spv/advance_pairs.spv"),
+        without_float64: Some(include_spirv!("../spv/advance_pairs.integers.spv")),
+        argument_bytes: 60,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "owner", offset: 24, access: Access::Read },
+            BufferArgument { name: "state", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "pairs", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 48, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformArithmetic",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "99553f7e7ea9bc8c2e9091f27611fddb40ecdfb215a5361c258d654e908d7bbb",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.owner);
+        encoder.buffer(32, args.state);
+        encoder.buffer(40, args.pairs);
+        encoder.buffer(48, args.words);
+        encoder.value(56, args.stride);
+    }
+}
+
+/// The pairs that may be flipped because a triangle of them got its owner in this outer round: they join those that are left
+/// from the inner rounds before.
+#[derive(Debug, Clone, Copy)]
+pub enum ConfigurePairs {}
+
+/// Arguments of [`ConfigurePairs`].
+#[derive(Debug, Clone, Copy)]
+pub struct ConfigurePairsArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub owner: View<'a, u32>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read
+    pub marked: View<'a, u32>,
+    /// read and written
+    pub pairs: View<'a, [u32; 2]>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub stride: u32,
+}
+
+impl Shader for ConfigurePairs {
+    type Args<'a> = ConfigurePairsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "configure_pairs",
+        words: include_spirv!("../spv/configure_pairs.spv"),
+        without_float64: Some(include_spirv!("../spv/configure_pairs.integers.spv")),
+        argument_bytes: 68,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "owner", offset: 24, access: Access::Read },
+            BufferArgument { name: "state", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "marked", offset: 40, access: Access::Read },
+            BufferArgument { name: "pairs", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 56, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformArithmetic",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "6ec82956bcb36d62b320bc50ac3588e6485132866e3c78afdd3cbdfc86c5adba",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.owner);
+        encoder.buffer(32, args.state);
+        encoder.buffer(40, args.marked);
+        encoder.buffer(48, args.pairs);
+        encoder.buffer(56, args.words);
+        encoder.value(64, args.stride);
+    }
+}
+
+/// Step 1 of an outer round: each sub-constraint that does not own its whole chain leaves the star of the end with fewer edges.
+/// One that is an edge becomes a constrained one; the others are listed with the half-edge that they cross first.
+#[derive(Debug, Clone, Copy)]
+pub enum DepartWalks {}
+
+/// Arguments of [`DepartWalks`].
+#[derive(Debug, Clone, Copy)]
+pub struct DepartWalksArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub sub_constraints: View<'a, [u32; 2]>,
+    /// read, may be left out
+    pub counter: Option<View<'a, u32>>,
+    /// read
+    pub spokes: View<'a, u32>,
+    /// read
+    pub degrees: View<'a, u32>,
+    /// read and written
+    pub walkers: View<'a, [u32; 2]>,
+    /// read and written
+    pub lost: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub most: u32,
+}
+
+impl Shader for DepartWalks {
+    type Args<'a> = DepartWalksArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "depart_walks",
+        words: include_spirv!("../spv/depart_walks.spv"),
+        without_float64: Some(include_spirv!("../spv/depart_walks.integers.spv")),
+        argument_bytes: 88,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "sub_constraints", offset: 24, access: Access::Read },
+            BufferArgument { name: "counter", offset: 32, access: Access::Read },
+            BufferArgument { name: "spokes", offset: 40, access: Access::Read },
+            BufferArgument { name: "degrees", offset: 48, access: Access::Read },
+            BufferArgument { name: "walkers", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "lost", offset: 64, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 72, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &[
+            "Float64",
+            "GroupNonUniform",
+            "GroupNonUniformArithmetic",
+            "Int64",
+            "PhysicalStorageBufferAddresses",
+            "Shader",
+        ],
+        source_hash: "204028a7f6eab7a5aba3c7ee52e47100c87b8ca9c71fc258247f02836f57dc93",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.sub_constraints);
+        encoder.optional(32, args.counter);
+        encoder.buffer(40, args.spokes);
+        encoder.buffer(48, args.degrees);
+        encoder.buffer(56, args.walkers);
+        encoder.buffer(64, args.lost);
+        encoder.buffer(72, args.words);
+        encoder.value(80, args.limit);
+        encoder.value(84, args.most);
+    }
+}
+
 /// Which constraints are edges: found by the numbers of vertices alone. The others are listed. A walk begins at the end with
 /// fewer edges, of two like ones at the first.
 #[derive(Debug, Clone, Copy)]
@@ -125,6 +360,75 @@ impl Shader for FindSpokes {
     }
 }
 
+/// Step 3 of an inner round, first half: pairs that have all they claimed are flipped. Outer links keep the names that they had
+/// before the round, until they are renewed.
+#[derive(Debug, Clone, Copy)]
+pub enum FlipPairs {}
+
+/// Arguments of [`FlipPairs`].
+#[derive(Debug, Clone, Copy)]
+pub struct FlipPairsArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read and written
+    pub owner: View<'a, u32>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read and written
+    pub pairs: View<'a, [u32; 2]>,
+    /// read and written
+    pub spokes: View<'a, u32>,
+    /// read and written
+    pub degrees: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub stride: u32,
+    /// a value
+    pub least: u32,
+}
+
+impl Shader for FlipPairs {
+    type Args<'a> = FlipPairsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "flip_pairs",
+        words: include_spirv!("../spv/flip_pairs.spv"),
+        without_float64: None,
+        argument_bytes: 72,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "owner", offset: 16, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "pairs", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "spokes", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "degrees", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "words", offset: 56, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "7e7a1fe52adf1dc08ba967dd71e463c4602b1ead1a8f5f89c1c8bd52d13d8ac4",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.owner);
+        encoder.buffer(24, args.state);
+        encoder.buffer(32, args.pairs);
+        encoder.buffer(40, args.spokes);
+        encoder.buffer(48, args.degrees);
+        encoder.buffer(56, args.words);
+        encoder.value(64, args.stride);
+        encoder.value(68, args.least);
+    }
+}
+
 /// The sub-constraints: from each vertex of a chain to the next, the lower one first. A chain has one fewer than vertices.
 #[derive(Debug, Clone, Copy)]
 pub enum ListSubConstraints {}
@@ -190,6 +494,89 @@ impl Shader for ListSubConstraints {
         encoder.buffer(56, args.sub_constraints);
         encoder.value(64, args.constraints);
         encoder.value(68, args.stop_limit);
+    }
+}
+
+/// Steps 2 and 3 of an outer round: walkers claim each triangle that they cross; the least word says who owns it. Who finds a
+/// lower word, or has its own replaced, does not own its whole chain.
+#[derive(Debug, Clone, Copy)]
+pub enum MarkChains {}
+
+/// Arguments of [`MarkChains`].
+#[derive(Debug, Clone, Copy)]
+pub struct MarkChainsArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub sub_constraints: View<'a, [u32; 2]>,
+    /// read
+    pub walkers: View<'a, [u32; 2]>,
+    /// read and written
+    pub lost: View<'a, u32>,
+    /// read and written
+    pub owner: View<'a, u32>,
+    /// written
+    pub state: View<'a, u32>,
+    /// written
+    pub marked: View<'a, u32>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub stride: u32,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub most: u32,
+}
+
+impl Shader for MarkChains {
+    type Args<'a> = MarkChainsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "mark_chains",
+        words: include_spirv!("../spv/mark_chains.spv"),
+        without_float64: Some(include_spirv!("../spv/mark_chains.integers.spv")),
+        argument_bytes: 92,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "sub_constraints", offset: 24, access: Access::Read },
+            BufferArgument { name: "walkers", offset: 32, access: Access::Read },
+            BufferArgument { name: "lost", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "owner", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 56, access: Access::Write },
+            BufferArgument { name: "marked", offset: 64, access: Access::Write },
+            BufferArgument { name: "words", offset: 72, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "4727896a44e83edaa317d10bb3ee2d48f1ca637b9c1d6d91bb5f796c278606a3",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.sub_constraints);
+        encoder.buffer(32, args.walkers);
+        encoder.buffer(40, args.lost);
+        encoder.buffer(48, args.owner);
+        encoder.buffer(56, args.state);
+        encoder.buffer(64, args.marked);
+        encoder.buffer(72, args.words);
+        encoder.value(80, args.stride);
+        encoder.value(84, args.limit);
+        encoder.value(88, args.most);
     }
 }
 
@@ -283,6 +670,100 @@ impl Shader for NamePoints {
         encoder.buffer(8, args.vertex_of);
         encoder.buffer(16, args.vertices);
         encoder.value(24, args.count);
+    }
+}
+
+/// The end of an outer round, in one workgroup. While few pairs may be flipped it makes the inner rounds that are left of this
+/// outer round, from the claims of one to the claims of the next: the same rounds as by the wide kernels. If each
+/// sub-constraint that is not in yet owns its whole chain, it goes on as far as it is allowed to. Then it turns to the next
+/// outer round.
+#[derive(Debug, Clone, Copy)]
+pub enum PairTail {}
+
+/// Arguments of [`PairTail`].
+#[derive(Debug, Clone, Copy)]
+pub struct PairTailArgs<'a> {
+    /// read and written
+    pub triangles: View<'a, u32>,
+    /// read and written
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read and written
+    pub owner: View<'a, u32>,
+    /// read and written
+    pub state: View<'a, u32>,
+    /// read and written
+    pub pairs: View<'a, [u32; 2]>,
+    /// read and written
+    pub spokes: View<'a, u32>,
+    /// read and written
+    pub degrees: View<'a, u32>,
+    /// read, may be left out
+    pub counter: Option<View<'a, u32>>,
+    /// read and written
+    pub words: View<'a, u32>,
+    /// a value
+    pub stride: u32,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub inner: u32,
+    /// a value
+    pub least: u32,
+    /// a value
+    pub most: u32,
+    /// a value
+    pub most_pairs: u32,
+}
+
+impl Shader for PairTail {
+    type Args<'a> = PairTailArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "pair_tail",
+        words: include_spirv!("../spv/pair_tail.spv"),
+        without_float64: Some(include_spirv!("../spv/pair_tail.integers.spv")),
+        argument_bytes: 104,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "links", offset: 8, access: Access::ReadWrite },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "owner", offset: 24, access: Access::ReadWrite },
+            BufferArgument { name: "state", offset: 32, access: Access::ReadWrite },
+            BufferArgument { name: "pairs", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "spokes", offset: 48, access: Access::ReadWrite },
+            BufferArgument { name: "degrees", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "counter", offset: 64, access: Access::Read },
+            BufferArgument { name: "words", offset: 72, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "2d6b2e426b2b4ed725c08528ee8a52ae9b718b3e644249bb3092a3033defad64",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.owner);
+        encoder.buffer(32, args.state);
+        encoder.buffer(40, args.pairs);
+        encoder.buffer(48, args.spokes);
+        encoder.buffer(56, args.degrees);
+        encoder.optional(64, args.counter);
+        encoder.buffer(72, args.words);
+        encoder.value(80, args.stride);
+        encoder.value(84, args.limit);
+        encoder.value(88, args.inner);
+        encoder.value(92, args.least);
+        encoder.value(96, args.most);
+        encoder.value(100, args.most_pairs);
     }
 }
 

@@ -22,5 +22,5 @@ mod walk;
 
 pub use crossings::Crossings;
 pub use error::ConstrainError;
-pub use insertion::InsertReport;
+pub use insertion::{Fault, InsertReport};
 pub use walk::Walk;

@@ -1,3 +1,4 @@
-//! The stage on a device.
+//! The stage on a device, bit for bit what [`reference`](mod@crate::reference) gives.
 
+pub mod insert;
 pub mod walk;

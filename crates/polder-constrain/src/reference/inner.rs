@@ -23,9 +23,9 @@
 //! the other, and each makes (length, number) of its chain smaller: see
 //! [`TriangleChain::measure`](super::TriangleChain::measure).
 
-use super::configuration::{Configuration, Side, configuration};
+use super::configuration::Configuration;
 use super::insert::Insertion;
-use super::keys::claim_key;
+use super::pairs::{Candidate, Owned, words_of_flip};
 use super::place::{self, FREE};
 use polder_mesh::{NONE, twin_code};
 
@@ -37,16 +37,6 @@ pub struct Trial {
     pub blind: bool,
     /// One flip a round at most.
     pub single_file: bool,
-}
-
-/// A pair (A, C) that may be flipped.
-#[derive(Clone, Copy, Debug)]
-struct Candidate {
-    /// The half-edge of A towards C.
-    h: u32,
-    /// B, where it is claimed too.
-    b: u32,
-    case: u8,
 }
 
 #[derive(Debug)]
@@ -77,12 +67,6 @@ impl Inner {
     }
 }
 
-impl Candidate {
-    fn key(&self) -> u32 {
-        claim_key(self.case, self.h / 3)
-    }
-}
-
 impl Insertion<'_> {
     /// One inner round; gives the number of flips. One without a flip does not count.
     pub fn inner_round(&mut self) -> u64 {
@@ -93,7 +77,7 @@ impl Insertion<'_> {
         // Step 1.
         work.retain(|&t| self.owner[t as usize] != FREE);
         for &t in &work {
-            self.inner.configurations[t as usize] = self.next_pair(t as usize).map(|(_, c)| c);
+            self.inner.configurations[t as usize] = self.owned().next_pair(t as usize).map(|(_, c)| c);
         }
         // Step 2.
         let mut candidates = std::mem::take(&mut self.inner.candidates);
@@ -153,64 +137,26 @@ impl Insertion<'_> {
         [c.h / 3, self.mesh.twin(c.h) / 3, c.b].into_iter().filter(|&t| t != NONE)
     }
 
-    /// The corner opposite the edge where the owner of its triangle comes in or goes out.
-    fn corner(&self, h: u32) -> (u32, Side) {
-        (self.mesh.apex(h), place::side(self.owner[(h / 3) as usize]))
-    }
-
-    /// The half-edge from A to C and the configuration of the two, if C has the same owner.
-    fn next_pair(&self, a: usize) -> Option<(u32, Configuration)> {
-        let h = 3 * a as u32 + place::outward(self.owner[a])?;
-        let g = self.mesh.twin(h);
-        if !place::same_owner(self.owner[a], self.owner[(g / 3) as usize]) {
-            return None;
-        }
-        let ends = [self.mesh.origin(h), self.mesh.destination(h)];
-        Some((h, configuration(self.positions, [self.corner(h), self.corner(g)], ends)))
+    fn owned(&self) -> Owned<'_> {
+        Owned { mesh: self.mesh, positions: self.positions, owner: &self.owner }
     }
 
     fn candidate(&self, a: usize) -> Option<Candidate> {
-        let own = self.inner.configurations[a]?;
-        let h = 3 * a as u32 + place::outward(self.owner[a])?;
-        match own {
-            Configuration::Zero | Configuration::Single => return Some(Candidate { h, b: NONE, case: 1 }),
-            Configuration::Concave => return None,
-            Configuration::Double if self.inner.trial.blind => return Some(Candidate { h, b: NONE, case: 1 }),
-            Configuration::Double => {}
-        }
-        let entry = self.mesh.twin(3 * a as u32 + place::inward(self.owner[a])?);
-        let b = entry / 3;
-        if !place::same_owner(self.owner[a], self.owner[b as usize]) {
-            return None;
-        }
-        let before = self.inner.configurations[b as usize]?;
-        // After the flip B is followed by the triangle of its edge and the far corner of C, which lies on the other side
-        // than A's near corner: it takes the place of A's third corner.
-        let far = self.corner(self.mesh.twin(h));
-        let ends = [self.mesh.origin(entry), self.mesh.destination(entry)];
-        let then = configuration(self.positions, [self.corner(entry), far], ends);
-        let case = match (before, then) {
-            (Configuration::Double, Configuration::Zero | Configuration::Single) => 2,
-            (Configuration::Concave, then) if then != Configuration::Concave => 3,
-            _ => return None,
-        };
-        Some(Candidate { h, b, case })
+        let before = |b: u32| self.inner.configurations[b as usize];
+        self.owned().candidate(a, self.inner.configurations[a]?, before, self.inner.trial.blind)
     }
 
     /// Flips the pair of half-edge `h` from A to C, both of the same owner.
     fn flip(&mut self, h: u32) {
         let g = self.mesh.twin(h);
         let (right, left) = (self.mesh.origin(h), self.mesh.destination(h));
-        let ((near, near_side), (far, far_side)) = (self.corner(h), self.corner(g));
+        let ((near, near_side), (far, far_side)) = (self.owned().corner(h), self.owned().corner(g));
         let diagonal = self.mesh.flip(h);
         let ((t, k), (u, j)) = (twin_code(h), twin_code(g));
         let Some(s) = place::owner(self.owner[t]) else { return };
-        // Corners from k on: near, right, far in t; far, left, near in u.
-        for (slot, k, [from_k, then, last]) in [(t, k, [near_side, -1, far_side]), (u, j, [far_side, 1, near_side])] {
-            let mut sides = [0; 3];
-            (sides[k], sides[(k + 1) % 3], sides[(k + 2) % 3]) = (from_k, then, last);
-            self.owner[slot] = place::word(s, sides);
-            self.owned[s as usize] -= u32::from(self.owner[slot] == FREE);
+        for (slot, word) in [t, u].into_iter().zip(words_of_flip(s, [k, j], [near_side, far_side])) {
+            self.owner[slot] = word;
+            self.owned_count[s as usize] -= u32::from(word == FREE);
         }
         if near_side == 0 && far_side == 0 {
             self.mesh.set_constrained(diagonal, true);

@@ -96,7 +96,7 @@ pub struct Insertion<'a> {
     /// For each triangle the word that says who owns it, or [`FREE`].
     pub(super) owner: Vec<u32>,
     /// For each sub-constraint how many triangles it owns.
-    pub(super) owned: Vec<u32>,
+    pub(super) owned_count: Vec<u32>,
     /// For each vertex a half-edge that begins there, and how many do.
     pub(super) spokes: Vec<u32>,
     pub(super) degrees: Vec<u32>,
@@ -143,7 +143,7 @@ impl<'a> Insertion<'a> {
             waiting: (0..sub_constraints.len() as u32).collect(),
             remaining: sub_constraints.len(),
             owner: vec![FREE; slots],
-            owned: vec![0; sub_constraints.len()],
+            owned_count: vec![0; sub_constraints.len()],
             spokes,
             degrees,
             inner: Inner::new(slots),
@@ -244,7 +244,7 @@ impl<'a> Insertion<'a> {
         self.report.outer_rounds += 1;
 
         // Step 3.
-        let own_all = |((s, _), length): &(&(u32, u32), &u64)| u64::from(self.owned[*s as usize]) == **length;
+        let own_all = |((s, _), length): &(&(u32, u32), &u64)| u64::from(self.owned_count[*s as usize]) == **length;
         self.waiting = walkers.iter().zip(&lengths).filter(|w| !own_all(w)).map(|(&(s, _), _)| s).collect();
         Ok(())
     }
@@ -296,9 +296,9 @@ impl<'a> Insertion<'a> {
             return;
         }
         if let Some(owner) = before {
-            self.owned[owner as usize] -= 1;
+            self.owned_count[owner as usize] -= 1;
         }
-        self.owned[s as usize] += 1;
+        self.owned_count[s as usize] += 1;
         self.owner[t] = word;
         self.touch(t as u32);
     }

@@ -26,6 +26,7 @@ mod insert;
 mod intersection;
 pub mod kernels;
 mod keys;
+mod pairs;
 mod place;
 mod walk;
 

@@ -1,0 +1,391 @@
+//! Sub-constraints become edges by flips, on the device. \[QCT\] section 4, algorithms 4 and 5.
+//!
+//! An outer round is [`reference::insert`](crate::reference::insert())'s, in these dispatches:
+//!
+//! 1. *Depart.* Each sub-constraint that does not own its whole chain leaves the star of one of its ends: first by the numbers
+//!    of vertices alone, which finds those that are edges, then by signs.
+//! 2. *Mark.* The others walk, and each triangle that they cross takes the least word by an atomic minimum. The word has the
+//!    owner's priority above and the edges by which the owner comes in and goes out below. Who finds a lower word, or has its
+//!    own replaced, does not own its whole chain; so that is known without counting. Who finds a triangle free lists it: later
+//!    rounds never change an owner, as who crosses the triangles of a flip has crossed those before it.
+//! 3. *Configure.* The triangles that got their owner are looked at, and those beside them along the chain. Pairs that may be
+//!    flipped claim their triangles, by words of 32 bits: the case, then a hash of the first triangle, both of which can be
+//!    found again.
+//! 4. *Inner rounds*, two dispatches each. One flips the pairs that have all they claimed; links outward keep the names that
+//!    the neighbors had before, and a stamp on each triangle says along which edge it was flipped. The other renews these
+//!    links, and looks at what the flips have changed: their triangles, the one before and the one after. All corners and words
+//!    are final by then, and where a link leads follows from the stamp whether it was renewed or not. So what may be flipped
+//!    claims its triangles for the next round at once.
+//! 5. *Tail.* In one workgroup: the inner rounds that are left where few pairs may be flipped, and the turn to the next outer
+//!    round. If nobody walks any more, it goes on for as long as a dispatch may.
+//!
+//! Departures from the reference, none of which shows in the result: only pairs are listed, not triangles; a pair that was not
+//! flipped and of which no triangle has changed is not looked at again; the sides of corners are not kept, as the word has them.
+
+use crate::kernels::*;
+use crate::reference::{INNER_ROUNDS, MOST_SUB_CONSTRAINTS};
+use crate::{Fault, InsertReport};
+use polder_flip::gpu::{Arithmetic, Mesh};
+use polder_vulkan::{
+    Buffer, Device, DeviceKind, Error, Estimate, Kernel, Pool, ReadBack, Recording, RunReport, View, groups_for,
+};
+
+const NONE: u32 = u32::MAX;
+const WORKGROUP: u32 = 256;
+const WORDS: usize = 40;
+/// Outer rounds before the host looks, and after that.
+const FIRST: u32 = 6;
+const BATCH: u32 = 3;
+/// Fewer pairs than these are left to the tail, which keeps them up to four times as many.
+const FEW: u32 = 256;
+
+/// Places of words that the host knows, as in `insert.glsl`.
+#[derive(Clone, Copy)]
+enum Word {
+    Left = 0,
+    Inserted = 1,
+    Stuck = 5,
+    EdgesAlready = 20,
+    Intersections = 22,
+    Walked = 24,
+    OuterRounds = 26,
+    InnerRounds = 27,
+    Flips = 28,
+    DepartFault = 36,
+}
+
+/// How much is done in one dispatch.
+#[derive(Debug)]
+struct Pace {
+    /// Workgroups of kernels that stride over their items.
+    groups: u32,
+    /// Rounds of a tail, and pairs taken in all of them, but for those of the last.
+    rounds: u32,
+    pairs: u32,
+}
+
+impl Pace {
+    const GPU: Self = Self { groups: 1056, rounds: 8192, pairs: 1 << 20 };
+    /// lavapipe leaves a shader, without a word, once its loops have made 65535 turns, those of the predicates included.
+    const CPU: Self = Self { groups: 64, rounds: 64, pairs: 4096 };
+}
+
+/// What is to be inserted.
+#[derive(Clone, Copy, Debug)]
+pub struct Input<'a> {
+    /// Pairs of distinct vertices with no vertex between them, as [`Insertion`](crate::reference::Insertion) takes them. They
+    /// need not be sorted, and may repeat.
+    pub sub_constraints: View<'a, [u32; 2]>,
+    /// How many there are: all of the view without.
+    pub count: Option<View<'a, u32>>,
+    /// For each vertex a half-edge that leaves it, and how many do. They are kept up.
+    pub spokes: View<'a, u32>,
+    /// See there.
+    pub degrees: View<'a, u32>,
+}
+
+/// What the stage holds beside the mesh: 36 bytes a slot and 20 a sub-constraint.
+#[derive(Debug)]
+pub struct Buffers {
+    /// Slots that there is room for, a multiple of four.
+    slots: usize,
+    owner: Buffer<u32>,
+    /// By triangle: the least key that claims it, in even rounds and again in odd ones; and its stamp.
+    state: Buffer<u32>,
+    pairs: Buffer<[u32; 2]>,
+    marked: Buffer<u32>,
+    walkers: Buffer<[u32; 2]>,
+    lost: Buffer<u32>,
+    words: Buffer<u32>,
+}
+
+impl Buffers {
+    /// Gives all of it; see [`Buffer::give`].
+    pub fn give(&self, pool: &Pool) {
+        for words in [&self.owner, &self.state, &self.marked, &self.lost] {
+            words.give(pool);
+        }
+        self.pairs.give(pool);
+        self.walkers.give(pool);
+    }
+}
+
+/// What an insertion did.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// As the reference reports it, but that sub-constraints that repeat count each time.
+    pub report: InsertReport,
+    /// Sub-constraints that are constrained edges.
+    pub inserted: u64,
+    /// Why it ended too early, if it did.
+    pub fault: Option<Fault>,
+}
+
+/// Where [`Counts`] will be found in the report of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Read(ReadBack);
+
+impl Read {
+    /// After the run.
+    pub fn counts(&self, report: &RunReport) -> Counts {
+        let words = report.words(self.0);
+        let word = |at: usize| words.get(at).copied().unwrap_or(0);
+        let narrow = |at: Word| u64::from(word(at as usize));
+        let wide = |at: Word, i: usize| {
+            let at = at as usize + 2 * i;
+            u64::from(word(at)) | u64::from(word(at + 1)) << 32
+        };
+        let faults = [word(Word::DepartFault as usize), word(Word::DepartFault as usize + 1)];
+        let fault = match faults.into_iter().find(|&fault| fault != NONE) {
+            Some(fault) => {
+                Some([Fault::Blocked, Fault::ThroughVertex, Fault::Lost][(fault as usize & 3).min(2)](fault >> 2))
+            }
+            None => (narrow(Word::Stuck) != 0).then_some(Fault::Stuck),
+        };
+        let report = InsertReport {
+            sub_constraints: narrow(Word::Inserted) + narrow(Word::Left),
+            edges_already: narrow(Word::EdgesAlready),
+            intersections: wide(Word::Intersections, 0),
+            walked: wide(Word::Walked, 0),
+            outer_rounds: narrow(Word::OuterRounds),
+            inner_rounds: narrow(Word::InnerRounds),
+            flips: [0, 1, 2].map(|i| wide(Word::Flips, i)),
+        };
+        Counts { report, inserted: narrow(Word::Inserted), fault }
+    }
+}
+
+/// The kernels of the stage on one device.
+#[derive(Debug)]
+pub struct Stage {
+    device: Device,
+    pace: Pace,
+    spokes: Kernel<FindSpokes>,
+    depart: Kernel<DepartWalks>,
+    mark: Kernel<MarkChains>,
+    configure: Kernel<ConfigurePairs>,
+    flip: Kernel<FlipPairs>,
+    advance: Kernel<AdvancePairs>,
+    tail: Kernel<PairTail>,
+}
+
+impl Stage {
+    /// Compiles the kernels.
+    ///
+    /// # Errors
+    ///
+    /// Those of the device.
+    pub fn new(device: &Device) -> Result<Self, Error> {
+        Self::with_arithmetic(device, Arithmetic::of(device)?)
+    }
+
+    /// With a given arithmetic: for tests, and where the device was asked before.
+    ///
+    /// # Errors
+    ///
+    /// Those of the device.
+    pub fn with_arithmetic(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
+        let workgroup = [("WORKGROUP", WORKGROUP)];
+        Ok(Self {
+            device: device.clone(),
+            pace: if device.info().kind == DeviceKind::Cpu { Pace::CPU } else { Pace::GPU },
+            spokes: Kernel::new(device, &workgroup)?,
+            depart: arithmetic.kernel(device, &workgroup)?,
+            mark: arithmetic.kernel(device, &workgroup)?,
+            configure: arithmetic.kernel(device, &workgroup)?,
+            flip: Kernel::new(device, &workgroup)?,
+            advance: arithmetic.kernel(device, &workgroup)?,
+            tail: arithmetic.kernel(device, &workgroup)?,
+        })
+    }
+
+    /// What [`Stage::buffers`] will hold.
+    pub fn estimate(sub_constraints: usize, slots: usize) -> Estimate {
+        Estimate::new()
+            .buffer::<u32>("owners", slots)
+            .buffer::<[u32; 3]>("claims of pairs", slots + 3)
+            .buffer::<[u32; 4]>("pairs", slots + 3)
+            .buffer::<u32>("marked triangles", slots)
+            .buffer::<[u32; 4]>("walkers", sub_constraints)
+            .buffer::<u32>("lost", sub_constraints)
+            .buffer::<u32>("constrain words", WORDS)
+    }
+
+    /// Memory for so many sub-constraints, and meshes of up to so many slots.
+    ///
+    /// # Errors
+    ///
+    /// If there are more sub-constraints than [`MOST_SUB_CONSTRAINTS`], or the memory cannot be had: then before any of it is
+    /// allocated.
+    pub fn buffers(&self, sub_constraints: usize, slots: usize) -> Result<Buffers, Error> {
+        let (device, stride) = (&self.device, slots.next_multiple_of(4));
+        if sub_constraints > MOST_SUB_CONSTRAINTS {
+            let why = format!("{sub_constraints} sub-constraints; up to {MOST_SUB_CONSTRAINTS} are possible");
+            return Err(Error::Recording { command: "constrain", why });
+        }
+        Self::estimate(sub_constraints, slots).check(device)?;
+        Ok(Buffers {
+            slots: stride,
+            owner: Buffer::new(device, "owners", slots)?,
+            state: Buffer::new(device, "claims of pairs", 3 * stride)?,
+            pairs: Buffer::new(device, "pairs", 2 * stride)?,
+            marked: Buffer::new(device, "marked triangles", slots)?,
+            walkers: Buffer::new(device, "walkers", 2 * sub_constraints)?,
+            lost: Buffer::new(device, "lost", sub_constraints)?,
+            words: Buffer::new(device, "constrain words", WORDS)?,
+        })
+    }
+
+    /// Finds the spokes of all vertices, for those that have no walk before.
+    pub fn record_spokes(&self, recording: &mut Recording, mesh: &Mesh, spokes: View<'_, u32>, degrees: View<'_, u32>) {
+        recording.fill(spokes, NONE);
+        recording.fill(degrees, 0);
+        let arguments = FindSpokesArgs {
+            triangles: mesh.corners(),
+            slots: mesh.slots(),
+            spokes,
+            degrees,
+            limit: mesh.capacity() as u32,
+            vertices: spokes.len().min(degrees.len()) as u32,
+        };
+        recording.dispatch(&self.spokes, groups_for(mesh.capacity(), WORKGROUP), &arguments);
+    }
+
+    /// Makes each sub-constraint a constrained edge, as [`reference::insert`](crate::reference::insert()) does.
+    ///
+    /// # Errors
+    ///
+    /// If the buffers are for fewer sub-constraints or slots, or there are fewer spokes than vertices.
+    pub fn record(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        input: Input<'_>,
+    ) -> Result<Read, Error> {
+        self.record_rounds(recording, mesh, buffers, input, INNER_ROUNDS, u32::MAX)
+    }
+
+    /// The same with another number of inner rounds to an outer one, and so many outer rounds at most: for tests.
+    ///
+    /// # Errors
+    ///
+    /// As [`Stage::record`].
+    #[doc(hidden)]
+    pub fn record_rounds(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        input: Input<'_>,
+        inner: u32,
+        outer: u32,
+    ) -> Result<Read, Error> {
+        let (vertices, slots) = (mesh.vertices(), mesh.capacity());
+        let (count, room) = (input.sub_constraints.len(), buffers.lost.len());
+        let with_spokes = input.spokes.len().min(input.degrees.len());
+        if vertices > with_spokes || slots > buffers.owner.len() || count > room {
+            let most = buffers.owner.len();
+            let why = format!("{slots} slots, {count} sub-constraints; buffers for {most} and {room}");
+            let why = format!("{why}; {vertices} vertices, spokes of {with_spokes}");
+            return Err(Error::Recording { command: "constrain", why });
+        }
+        if count > 0 {
+            Self::record_start(recording, buffers)?;
+            if outer == u32::MAX {
+                let left = buffers.words.slice(Word::Left as usize..Word::Left as usize + 1)?;
+                // Each outer round inserts or flips something, or looks at a tail of thousands of flips.
+                recording.repeat_ahead("insert constraints", left, u32::MAX, FIRST, BATCH, |round| {
+                    self.record_outer(round, mesh, buffers, input, inner);
+                });
+            } else {
+                (0..outer).for_each(|_| self.record_outer(recording, mesh, buffers, input, inner));
+            }
+        } else {
+            recording.fill(buffers.words.view(), 0);
+            recording.fill(buffers.words.slice(Word::DepartFault as usize..WORDS)?, NONE);
+        }
+        Ok(Read(recording.read(buffers.words.view())))
+    }
+
+    fn record_start(recording: &mut Recording, buffers: &Buffers) -> Result<(), Error> {
+        let slots = buffers.slots;
+        recording.fill(buffers.words.view(), 0);
+        recording.fill(buffers.words.slice(Word::DepartFault as usize..WORDS)?, NONE);
+        recording.fill(buffers.owner.view(), NONE);
+        recording.fill(buffers.state.slice(0..2 * slots)?, NONE);
+        recording.fill(buffers.state.slice(2 * slots..3 * slots)?, 0);
+        Ok(())
+    }
+
+    fn record_outer(&self, recording: &mut Recording, mesh: &Mesh, buffers: &Buffers, input: Input<'_>, inner: u32) {
+        let groups = [self.pace.groups, 1, 1];
+        let (triangles, links, positions) = (mesh.corners(), mesh.twins(), mesh.positions().cast());
+        let (owner, state, words) = (buffers.owner.view(), buffers.state.view(), buffers.words.view());
+        let Input { spokes, degrees, .. } = input;
+        let (walkers, lost, marked) = (buffers.walkers.view().cast(), buffers.lost.view(), buffers.marked.view());
+        let pairs = buffers.pairs.view().cast();
+        let (stride, limit) = (buffers.slots as u32, input.sub_constraints.len() as u32);
+        let most = (3 * mesh.capacity()) as u32;
+        let arguments = DepartWalksArgs {
+            triangles,
+            links,
+            positions,
+            sub_constraints: input.sub_constraints.cast(),
+            counter: input.count,
+            spokes,
+            degrees,
+            walkers,
+            lost,
+            words,
+            limit,
+            most,
+        };
+        recording.dispatch(&self.depart, groups, &arguments);
+        let arguments = MarkChainsArgs {
+            triangles,
+            links,
+            positions,
+            sub_constraints: input.sub_constraints.cast(),
+            walkers,
+            lost,
+            owner,
+            state,
+            marked,
+            words,
+            stride,
+            limit,
+            most,
+        };
+        recording.dispatch(&self.mark, groups, &arguments);
+        let arguments = ConfigurePairsArgs { triangles, links, positions, owner, state, marked, pairs, words, stride };
+        recording.dispatch(&self.configure, groups, &arguments);
+        for _ in 0..inner {
+            let least = FEW;
+            let arguments =
+                FlipPairsArgs { triangles, links, owner, state, pairs, spokes, degrees, words, stride, least };
+            recording.dispatch(&self.flip, groups, &arguments);
+            let arguments = AdvancePairsArgs { triangles, links, positions, owner, state, pairs, words, stride };
+            recording.dispatch(&self.advance, groups, &arguments);
+        }
+        let arguments = PairTailArgs {
+            triangles,
+            links,
+            positions,
+            owner,
+            state,
+            pairs,
+            spokes,
+            degrees,
+            counter: input.count,
+            words,
+            stride,
+            limit,
+            inner,
+            least: FEW,
+            most: self.pace.rounds,
+            most_pairs: self.pace.pairs,
+        };
+        recording.dispatch(&self.tail, [1, 1, 1], &arguments);
+    }
+}

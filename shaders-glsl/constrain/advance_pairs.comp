@@ -1,0 +1,47 @@
+// The end of an inner round and the beginning of the next in one: renews the links around all flips, gives claimed triangles
+// back, and looks at the triangles around flips, which claim what they need for the next round.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "appending.glsl"
+#include "candidates.glsl"
+
+layout(push_constant, std430) uniform Args {
+    ReadU32 triangles;
+    U32 links;
+    ReadPoints positions;
+    ReadU32 owner;
+    U32 state;
+    U32x2 pairs;
+    U32 words;
+    uint stride;
+};
+
+void main() {
+    uint taken = words.at[TAKEN];
+    uint round = words.at[ROUND_NOW];
+    uint parity = round & 1u ^ 1u;
+    uint end = 4u * taken;
+    if (item_index() == 0u && taken != 0u) {
+        words.at[ROUND] = round;
+        words.at[CANDIDATES + parity] = 0u;
+        words.at[INNER] += 1u;
+        words.at[INNER_ROUNDS] += 1u;
+    }
+    for (uint begin = group_index() * WORKGROUP; begin < end; begin += item_stride()) {
+        uint i = begin + gl_LocalInvocationIndex;
+        Candidate found = NO_PAIR;
+        if (i < end) {
+            uvec2 entry = pairs.at[parity * stride + (i >> 2)];
+            Look look = settle(links, U32(owner), state, stride, parity, round, entry, i & 3u);
+            found = look.known;
+            if (look.a != NONE && found.a == NONE) {
+                found = candidate(U32(triangles), links, positions, U32(owner), state, stride, round, look.a);
+            }
+        }
+        uint place = place_in(words, CANDIDATES + (parity ^ 1u), found.a != NONE);
+        if (found.a != NONE) {
+            claim(state, stride, parity ^ 1u, found);
+            pairs.at[(parity ^ 1u) * stride + place] = found.entry;
+        }
+    }
+}

@@ -1,0 +1,86 @@
+// Step 1 of an outer round: each sub-constraint that does not own its whole chain leaves the star of the end with fewer edges.
+// One that is an edge becomes a constrained one; the others are listed with the half-edge that they cross first.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "appending.glsl"
+#include "steps.glsl"
+
+layout(push_constant, std430) uniform Args {
+    ReadU32 triangles;
+    U32 links;
+    ReadPoints positions;
+    ReadU32x2 sub_constraints;
+    MaybeReadU32 counter; // how many there are, else all
+    ReadU32 spokes;
+    ReadU32 degrees;
+    U32x2 walkers; // of even rounds, then of odd ones
+    U32 lost;      // by sub-constraint, whether it met another one that has a lower priority
+    U32 words;
+    uint limit; // sub-constraints that there is room for
+    uint most;  // spokes that any turn takes
+};
+
+shared uint inserted;
+
+void main() {
+    uint outer = words.at[OUTER];
+    uint from = (outer & 1u) * limit;
+    uint to = limit - from;
+    bool first = outer == 0u;
+    uint end = first ? limit : words.at[WALKERS + (outer & 1u)];
+    if (first && present(counter)) {
+        end = min(counter.at[0], limit);
+    }
+    if (gl_LocalInvocationIndex == 0u) {
+        inserted = 0u;
+    }
+    barrier();
+    for (uint begin = group_index() * WORKGROUP; begin < end; begin += item_stride()) {
+        uint i = begin + gl_LocalInvocationIndex;
+        uint s = i;
+        bool takes = i < end;
+        if (takes && !first) {
+            s = walkers.at[from + i].x;
+            takes = lost.at[s] != 0u;
+        }
+        bool walks = false;
+        uint h = NONE;
+        if (takes) {
+            lost.at[s] = 0u;
+            uvec2 ends = sub_constraints.at[s];
+            if (degrees.at[ends.y] < degrees.at[ends.x]) {
+                ends = ends.yx;
+            }
+            uint spoke = spokes.at[ends.x];
+            h = edge_to(spoke, ends.y, most, triangles, ReadU32(links));
+            if (h != NONE) {
+                uint g = twin(links, h);
+                links.at[h] = g | CONSTRAINED;
+                links.at[g] = h | CONSTRAINED;
+                atomicAdd(inserted, 1u);
+            } else {
+                Walker walker = turn_from(spoke, point_at(positions, ends.x), point_at(positions, ends.y));
+                uint event = TURNS;
+                for (uint step = 0u; step <= most && event == TURNS; step++) {
+                    event = advance(walker, triangles, ReadU32(links), positions);
+                }
+                walks = event == LEAVES;
+                h = walker.h;
+                if (!walks) {
+                    atomicMin(words.at[DEPART_FAULT], s << 2 | (event == ALONG ? THROUGH_VERTEX : ASTRAY));
+                }
+            }
+        }
+        uint place = place_in(words, WALKERS + (outer & 1u ^ 1u), walks);
+        if (walks) {
+            walkers.at[to + place] = uvec2(s, h);
+        }
+    }
+    barrier();
+    if (gl_LocalInvocationIndex == 0u && inserted != 0u) {
+        atomicAdd(words.at[INSERTED], inserted);
+        if (first) {
+            atomicAdd(words.at[EDGES_ALREADY], inserted);
+        }
+    }
+}

@@ -1,0 +1,55 @@
+// Step 3 of an inner round, first half: pairs that have all they claimed are flipped. Outer links keep the names that they had
+// before the round, until they are renewed.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "pairs.glsl"
+
+layout(push_constant, std430) uniform Args {
+    U32 triangles;
+    U32 links;
+    U32 owner;
+    U32 state;
+    U32x2 pairs;
+    U32 spokes;
+    U32 degrees;
+    U32 words;
+    uint stride;
+    uint least; // fewer pairs are left to another kernel
+};
+
+shared uint flips_of_group[4]; // by case, and those that made an edge of their owner
+
+void main() {
+    uint round = words.at[ROUND] + 1u;
+    uint parity = words.at[ROUND] & 1u;
+    uint count = words.at[CANDIDATES + parity];
+    bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
+    uint end = count >= least && !fails ? count : 0u;
+    if (gl_LocalInvocationIndex < 4u) {
+        flips_of_group[gl_LocalInvocationIndex] = 0u;
+    }
+    barrier();
+    for (uint i = item_index(); i < end; i += item_stride()) {
+        uvec2 entry = pairs.at[parity * stride + i];
+        if (wins(links, state, stride, parity, entry)) {
+            if (flip_pair(triangles, links, owner, state, spokes, degrees, stride, round, entry.x)) {
+                atomicAdd(flips_of_group[3], 1u);
+            }
+            pairs.at[parity * stride + i].x = entry.x | WON;
+            atomicAdd(flips_of_group[entry.y >> CLAIM_BITS], 1u);
+        }
+    }
+    barrier();
+    uint rank = gl_LocalInvocationIndex;
+    if (rank < 4u && flips_of_group[rank] != 0u) {
+        if (rank == 3u) {
+            atomicAdd(words.at[INSERTED], flips_of_group[rank]);
+        } else {
+            add_wide(words, FLIPS + 2u * rank, flips_of_group[rank]);
+        }
+    }
+    if (item_index() == 0u) {
+        words.at[TAKEN] = end;
+        words.at[ROUND_NOW] = round;
+    }
+}

@@ -1,0 +1,131 @@
+// Insertion of sub-constraints: what steers it, whose a triangle is, and flips of pairs. Kernels that see what other
+// invocations of the same dispatch wrote define COHERENT.
+#ifndef INSERT_GLSL
+#define INSERT_GLSL
+
+#include "items.glsl"
+#include "mesh.glsl"
+
+BUFFER(SharedU32, uint, 4, coherent);
+BUFFER(U32x2, uvec2, 8, );
+BUFFER(SharedU32x2, uvec2, 8, coherent);
+BUFFER(ReadU32x2, uvec2, 8, readonly);
+
+#ifdef COHERENT
+#define WORDS SharedU32
+#define PAIRS SharedU32x2
+#else
+#define WORDS U32
+#define PAIRS U32x2
+#endif
+
+// The words that steer rounds.
+// Sub-constraints that are not in yet; zero also where nothing can go on.
+const uint LEFT = 0u;
+// Sub-constraints that are edges.
+const uint INSERTED = 1u;
+// The number of the outer round.
+const uint OUTER = 2u;
+// Whether a round changed nothing, or there were too many.
+const uint STUCK = 5u;
+// Walkers of even and of odd outer rounds.
+const uint WALKERS = 6u;
+// Triangles that got their owner in this outer round.
+const uint MARKED = 8u;
+// Sub-constraints that walked in this outer round and do not own their whole chain; and those of the round before.
+const uint LOSERS = 9u;
+const uint WAITED = 10u;
+// Pairs that may be flipped in even and in odd inner rounds.
+const uint CANDIDATES = 12u;
+// Pairs that this inner round takes.
+const uint TAKEN = 14u;
+// The number of the last inner round, which never repeats; and of this one.
+const uint ROUND = 15u;
+const uint ROUND_NOW = 16u;
+// Inner rounds of this outer round.
+const uint INNER = 17u;
+// What the turn before has seen of flips and insertions.
+const uint PROGRESS = 18u;
+// What is reported; sums have two words, the low one first.
+const uint EDGES_ALREADY = 20u;
+const uint INTERSECTIONS = 22u;
+const uint WALKED = 24u;
+const uint OUTER_ROUNDS = 26u;
+const uint INNER_ROUNDS = 27u;
+const uint FLIPS = 28u; // by case
+// The least sub-constraint that cannot go on, four times its number and why: on leaving its vertex, and on its way.
+const uint DEPART_FAULT = 36u;
+const uint WALK_FAULT = 37u;
+
+// Why a sub-constraint cannot go on.
+const uint BLOCKED = 0u;
+const uint THROUGH_VERTEX = 1u;
+const uint ASTRAY = 2u;
+
+// The word of a triangle that nobody owns, and no edge in the word of one that somebody does: `place` of the reference.
+const uint FREE = 0xffffffffu;
+const uint NO_EDGE = 3u;
+
+const uint OWNER_BITS = 28u;
+const uint CLAIM_BITS = 30u;
+// No third triangle in the second word of a candidate, and the bits of one; the case, less one, is above.
+const uint NO_B = 0x3fffffffu;
+// The mark of a candidate that was flipped.
+const uint WON = 0x80000000u;
+// Instead of an edge in a stamp: listed, not flipped.
+const uint LISTED = 3u;
+
+uint scatter(uint id, uint bits) {
+    uint mask = (1u << bits) - 1u;
+    uint x = id;
+    x ^= x >> (bits / 2u);
+    x = (x * 0x7feb352du) & mask;
+    x ^= x >> (bits / 2u - 1u);
+    x = (x * 0x846ca68bu) & mask;
+    return x ^ (x >> (bits / 2u));
+}
+
+// The sub-constraint of an owner's priority.
+uint owner_of(uint word) {
+    uint mask = (1u << OWNER_BITS) - 1u;
+    uint x = word >> 4;
+    x ^= x >> 14;
+    x = (x * 0x43021123u) & mask;
+    x ^= x >> 13 ^ x >> 26;
+    x = (x * 0x1d69e2a5u) & mask;
+    return x ^ (x >> 14);
+}
+
+bool same_owner(uint a, uint b) {
+    return a != FREE && b != FREE && (a ^ b) < 16u;
+}
+
+uint inward(uint word) {
+    return word & 3u;
+}
+
+uint outward(uint word) {
+    return word >> 2 & 3u;
+}
+
+uint turned(uint k, uint by) {
+    k += by;
+    return k >= 3u ? k - 3u : k;
+}
+
+// The side of the corners opposite the edges where the owner comes in and goes out.
+int side_of(uint word) {
+    uint i = inward(word);
+    uint o = outward(word);
+    return i == NO_EDGE || o == NO_EDGE ? 0 : o == turned(i, 1u) ? 1 : -1;
+}
+
+// Adds to a number of two words, the low one first.
+void add_wide(WORDS words, uint at, uint value) {
+    uint old = atomicAdd(words.at[at], value);
+    if (old + value < old) {
+        atomicAdd(words.at[at + 1u], 1u);
+    }
+}
+
+#endif

@@ -1,0 +1,203 @@
+//! Insertion of sub-constraints on the device against its reference, slot by slot.
+#![cfg(feature = "gpu-tests")]
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod constrain_support;
+mod vulkan_support;
+
+use constrain_support::Start;
+use glam::DVec2;
+use polder_constrain::gpu::insert::{Counts, Input, Stage};
+use polder_constrain::reference::{self, Insertion};
+use polder_constrain::{ConstrainError, Fault, InsertReport};
+use polder_flip::gpu::{Arithmetic, Mesh};
+use polder_mesh::GhostMesh;
+use polder_tests::families;
+use vulkan_support::Gpu;
+
+/// A device, and the stage by both arithmetics.
+fn stages() -> (Gpu, Vec<Stage>) {
+    let gpu = Gpu::open();
+    let stage = |arithmetic| Stage::with_arithmetic(&gpu.device, arithmetic).unwrap();
+    let stages = vec![stage(Arithmetic::Filtered), stage(Arithmetic::Integers)];
+    (gpu, stages)
+}
+
+struct Case<'a> {
+    mesh: &'a GhostMesh,
+    positions: &'a [DVec2],
+    sub_constraints: &'a [[u32; 2]],
+}
+
+/// Rounds: inner ones to an outer one, and outer ones.
+fn run(gpu: &mut Gpu, stage: &Stage, case: &Case<'_>, rounds: Option<[u32; 2]>) -> (Counts, GhostMesh) {
+    let mesh = Mesh::with_slots(&gpu.device, case.positions.len(), case.mesh.slots()).unwrap();
+    mesh.upload(&mut gpu.engine, case.mesh, case.positions).unwrap();
+    let count = case.sub_constraints.len();
+    let buffers = stage.buffers(count, case.mesh.slots()).unwrap();
+    let sub_constraints = gpu.buffer(case.sub_constraints);
+    let nothing = vec![0; case.positions.len()];
+    let (spokes, degrees) = (gpu.buffer(&nothing), gpu.buffer(&nothing));
+    let (spokes, degrees) = (spokes.view(), degrees.view());
+    let input = Input { sub_constraints: sub_constraints.view(), count: None, spokes, degrees };
+    let mut recording = gpu.recording();
+    stage.record_spokes(&mut recording, &mesh, spokes, degrees);
+    let read = match rounds {
+        None => stage.record(&mut recording, &mesh, &buffers, input),
+        Some([inner, outer]) => stage.record_rounds(&mut recording, &mesh, &buffers, input, inner, outer),
+    };
+    let report = gpu.run(&recording);
+    let counts = read.unwrap().counts(&report);
+    (counts, mesh.download(&mut gpu.engine).unwrap())
+}
+
+fn assert_inserted(gpu: &mut Gpu, stage: &Stage, name: &str, case: &Case<'_>) -> InsertReport {
+    let mut expected = case.mesh.clone();
+    let report = reference::insert(&mut expected, case.positions, case.sub_constraints).unwrap();
+    let (counts, mesh) = run(gpu, stage, case, None);
+    assert_eq!(counts, Counts { report, inserted: report.sub_constraints, fault: None }, "{name}");
+    assert!(mesh == expected, "{name}: {report}");
+    report
+}
+
+/// Families, with all their constraints cut.
+fn starts(count: usize, seed: u64) -> Vec<(&'static str, Start, Vec<[u32; 2]>)> {
+    let mut starts = Vec::new();
+    for (name, pslg) in families(count, seed) {
+        let start = Start::stage_4(&pslg);
+        let walk = reference::walk(&start.mesh, &start.positions, &start.constraints).unwrap();
+        let crossings = reference::crossings(&start.mesh, &start.positions, &walk, 1).unwrap();
+        if crossings.pairs.is_empty() {
+            starts.push((name, start, walk.sub_constraints));
+        }
+    }
+    starts
+}
+
+#[test]
+fn every_family() {
+    let (mut gpu, stages) = stages();
+    let mut flips = 0;
+    for (size, seed) in [(30, 1), (300, 2), (2000, 3)] {
+        for (turn, (name, start, subs)) in starts(size, seed).iter().enumerate() {
+            let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: subs };
+            for stage in if size < 1000 { &stages[..] } else { &stages[turn % 2..][..1] } {
+                flips += assert_inserted(&mut gpu, stage, name, &case).all_flips();
+            }
+        }
+    }
+    assert!(flips > 1000, "{flips}");
+}
+
+/// The mesh after each inner round of the first outer one, and after each outer round.
+#[test]
+fn round_by_round() {
+    let (mut gpu, stages) = stages();
+    let mut compared = 0;
+    for (turn, (name, start, subs)) in starts(700, 4).iter().enumerate() {
+        let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: subs };
+        for [inner, outer] in [[1, 1], [2, 1], [3, 1], [5, 1], [1, 2], [1, 3], [2, 4], [8, 2], [3, 5]] {
+            let mut expected = start.mesh.clone();
+            let mut insertion = Insertion::new(&mut expected, &start.positions, subs).unwrap();
+            insertion.set_inner_rounds(inner);
+            for _ in 0..outer {
+                if !insertion.is_done() {
+                    insertion.outer_round().unwrap();
+                }
+            }
+            if insertion.is_done() {
+                continue;
+            }
+            let report = insertion.report();
+            let (counts, mesh) = run(&mut gpu, &stages[turn % 2], &case, Some([inner, outer]));
+            assert_eq!(counts.report, report, "{name}: {inner} {outer}");
+            assert!(mesh == expected, "{name}: {inner} {outer}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 20, "{compared}");
+}
+
+/// Crossing constraints end as blocked, in the same round and by the same sub-constraint as in the reference.
+#[test]
+fn crossings_end_as_blocked() {
+    let (mut gpu, stages) = stages();
+    let mut blocked = 0;
+    for seed in 0..8 {
+        let pslg = polder_io::generate::crossing_segments(200, 10 + 10 * seed as usize, 0.3, seed);
+        let start = Start::stage_4(&pslg);
+        let subs = reference::walk(&start.mesh, &start.positions, &start.constraints).unwrap().sub_constraints;
+        let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
+        let mut expected = start.mesh.clone();
+        let error = reference::insert(&mut expected, &start.positions, &subs);
+        let (counts, mesh) = run(&mut gpu, &stages[seed as usize % 2], &case, None);
+        match error {
+            Ok(report) => assert_eq!(counts.report, report),
+            Err(ConstrainError::Blocked { sub_constraint, .. }) => {
+                let lowest = subs.iter().position(|s| *s == sub_constraint).unwrap() as u32;
+                assert_eq!(counts.fault, Some(Fault::Blocked(lowest)));
+                assert!(counts.inserted < subs.len() as u64);
+                blocked += 1;
+            }
+            Err(other) => panic!("{other}"),
+        }
+        assert!(mesh == expected, "{seed}");
+    }
+    assert!(blocked > 4, "{blocked}");
+}
+
+/// Sub-constraints may come in any order and repeatedly: constrained Delaunay triangulations do not tell.
+#[test]
+fn any_order_gives_one_flipped_mesh() {
+    let (mut gpu, stages) = stages();
+    for (turn, (name, start, subs)) in starts(250, 6).iter().enumerate() {
+        let mut expected = None;
+        for order in 0..3 {
+            let mut subs = subs.clone();
+            if order > 0 {
+                subs.extend(subs.clone().iter().step_by(3));
+                subs.sort_by_key(|s| polder_flip::priority(s[0].wrapping_mul(977) ^ s[1] ^ order));
+            }
+            let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
+            let (counts, mut mesh) = run(&mut gpu, &stages[turn % 2], &case, None);
+            assert_eq!((counts.inserted, counts.fault), (subs.len() as u64, None), "{name}");
+            polder_flip::reference::flip(&mut mesh, &start.positions).unwrap();
+            let names: Vec<u32> = (0..start.positions.len() as u32).collect();
+            let parts = polder_mesh::Parts { representatives: names.clone(), chains: Default::default() };
+            let digest = polder_mesh::Triangulation::from_mesh(&mesh, &names, parts).digest();
+            assert_eq!(*expected.get_or_insert(digest), digest, "{name}");
+        }
+    }
+}
+
+#[test]
+fn sizes_around_nothing_and_a_workgroup() {
+    let (mut gpu, stages) = stages();
+    for count in [0usize, 1, 2, 3, 255, 256, 257, 700] {
+        let start = Start::stage_4(&polder_io::generate::segments((4 * count).max(3), count, 3));
+        let walk = reference::walk(&start.mesh, &start.positions, &start.constraints).unwrap();
+        let subs = walk.sub_constraints;
+        let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
+        assert_inserted(&mut gpu, &stages[count % 2], "segments", &case);
+    }
+}
+
+#[test]
+fn buffers_for_less_are_refused() {
+    let (mut gpu, stages) = stages();
+    let start = Start::stage_4(&polder_io::generate::segments(60, 10, 3));
+    let mesh = Mesh::with_slots(&gpu.device, start.positions.len(), start.mesh.slots()).unwrap();
+    let subs = gpu.buffer(&[[0u32, 1]; 10]);
+    let vertices = gpu.buffer(&vec![0u32; start.positions.len()]);
+    let fewer = vertices.slice(0..start.positions.len() - 1).unwrap();
+    let enough = stages[0].buffers(10, start.mesh.slots()).unwrap();
+    let few_slots = stages[0].buffers(10, start.mesh.slots() - 1).unwrap();
+    let few_subs = stages[0].buffers(9, start.mesh.slots()).unwrap();
+    for (buffers, spokes) in [(&few_slots, vertices.view()), (&few_subs, vertices.view()), (&enough, fewer)] {
+        let input = Input { sub_constraints: subs.view(), count: None, spokes, degrees: vertices.view() };
+        let mut recording = gpu.recording();
+        assert!(stages[0].record(&mut recording, &mesh, buffers, input).is_err());
+        assert!(recording.is_empty());
+    }
+    assert!(stages[0].buffers(reference::MOST_SUB_CONSTRAINTS + 1, 10).is_err());
+}
