@@ -17,9 +17,10 @@ const LEAST: usize = 4 * HUGE;
 ///
 /// To be called while a device works, so that [`Engine::fetch`](crate::Engine::fetch) need not wait for the memory.
 pub fn room_for<T: Pod>(len: usize) -> Vec<T> {
-    let mut room = advised(len);
+    let mut room = Vec::with_capacity(len);
     let bytes = bytes_of(room.spare_capacity_mut());
     if bytes.len() >= LEAST {
+        ask_for_huge_pages(bytes);
         let (head, huge) = bytes.split_at_mut(bytes.as_ptr().align_offset(HUGE).min(bytes.len()));
         huge.par_chunks_mut(HUGE).chain(head.par_chunks_mut(HUGE)).for_each(touch);
     }
@@ -28,16 +29,6 @@ pub fn room_for<T: Pod>(len: usize) -> Vec<T> {
 
 fn touch(bytes: &mut [MaybeUninit<u8>]) {
     bytes.iter_mut().step_by(PAGE).for_each(|byte| _ = byte.write(0));
-}
-
-/// An empty vector with room for `len` elements, without pages if it is large.
-pub(crate) fn advised<T: Pod>(len: usize) -> Vec<T> {
-    let mut room = Vec::with_capacity(len);
-    let bytes = bytes_of(room.spare_capacity_mut());
-    if bytes.len() >= LEAST {
-        ask_for_huge_pages(bytes);
-    }
-    room
 }
 
 /// The same memory as bytes.

@@ -7,7 +7,7 @@
 use crate::Error;
 use crate::buffer::{BufferInner, View};
 use crate::engine::Engine;
-use crate::host::{advised, bytes_of};
+use crate::host::{bytes_of, room_for};
 use crate::memory::Allocated;
 use crate::run::host_reads;
 use crate::submit::{Slot, Used};
@@ -26,7 +26,7 @@ const LEAST: usize = 1 << 20;
 /// So many chunks are on their way at once.
 const AHEAD: usize = 4;
 /// Bytes that one task of the pool copies.
-const PIECE: usize = 1 << 20;
+const PIECE: usize = 256 << 10;
 const TIMEOUT: Duration = Duration::from_secs(60);
 
 /// Buffers for each way, made when first needed.
@@ -113,7 +113,7 @@ impl<'a> Downloads<'a> {
         vec.clear();
         if vec.capacity() < from.len() {
             *vec = Vec::new();
-            *vec = advised(from.len());
+            *vec = room_for(from.len());
         }
         let into = Box::new(Filling { vec, len: from.len() });
         self.parts.push(Part { buffer: Arc::clone(from.buffer), start: from.start, into });
