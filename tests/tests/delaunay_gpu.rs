@@ -4,11 +4,11 @@
 
 mod vulkan_support;
 
-use polder::{Backend, DVec2, Error, Gpu, MeshError, Options, Place, Pslg, Report, triangulate, verify};
+use polder::{AUTO_FROM, Backend, DVec2, Error, Gpu, MeshError, Options, Place, Pslg, Report, triangulate, verify};
 use polder_flip::gpu::Arithmetic;
 use polder_io::generate;
 use polder_tests::{families, point_families};
-use polder_vulkan::{Buffer, Device, Engine};
+use polder_vulkan::{Buffer, Device, DeviceKind, Engine, Selection};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
@@ -179,25 +179,44 @@ fn points_and_result_may_stay_on_the_device() {
 fn what_cannot_be_done_is_a_typed_error_and_auto_goes_to_the_cpu() {
     let segments = generate::segments(100, 10, 1);
     let points = generate::uniform(100, 1);
-    let selection = polder_vulkan::Selection::Environment;
+    let selection = Selection::Environment;
     let vulkan = Options { device: selection.clone(), ..Options::with_backend(Backend::Vulkan) };
     let error = triangulate(&segments, &vulkan).unwrap_err();
     assert!(error.kind() == "unsupported" && error.to_string().contains("constraints"), "{error}");
-    let nothing = polder_vulkan::Selection::Name("no such device".into());
-    let error = triangulate(&points, &Options { device: nothing, ..vulkan.clone() }).unwrap_err();
+    let nothing = Selection::Name("no such device".into());
+    let error = triangulate(&points, &Options { device: nothing.clone(), ..vulkan.clone() }).unwrap_err();
     assert!(error.kind() == "unsupported" && error.to_string().contains("no such device"), "{error}");
     let error = triangulate(&points, &Options { grid: Some(0), ..vulkan.clone() }).unwrap_err();
     assert_eq!(error.kind(), "unsupported");
     let cancel = Some(Arc::new(AtomicBool::new(true)));
     assert_eq!(triangulate(&points, &Options { cancel, ..vulkan.clone() }).unwrap_err().kind(), "cancelled");
 
-    assert_on_device(&triangulate(&points, &vulkan).unwrap().report, "vulkan");
+    let report = triangulate(&points, &vulkan).unwrap().report;
+    assert_on_device(&report, "vulkan");
+    assert!(report.device.unwrap().opening_seconds.is_some_and(|opening| opening > 0.0 && opening < report.seconds));
     for pslg in [&segments, &points] {
         let report = triangulate(pslg, &Options::default()).unwrap().report;
         assert_eq!(report.backend, "cpu");
         assert!(report.why.contains("a GPU pays from"), "{}", report.why);
         assert_eq!(report.stages_on_cpu().count(), report.stages.len());
     }
+    // Enough points, few threads.
+    let many = Pslg::new(points.points().repeat(AUTO_FROM / 200), vec![]).unwrap();
+    let few = |device: &Selection| Options { threads: 2, device: device.clone(), ..Options::default() };
+    let report = triangulate(&many, &few(&nothing)).unwrap().report;
+    assert!(report.backend == "cpu" && report.why.contains("no such device"), "{}", report.why);
+    let report = triangulate(&many, &few(&selection)).unwrap().report;
+    let is_cpu = Device::open(&vulkan_support::options()).unwrap().info().kind == DeviceKind::Cpu;
+    let (backend, why) =
+        if is_cpu { ("cpu", "is a CPU") } else { ("vulkan", "beside 2 threads it pays from 500000 on") };
+    assert!(report.backend == backend && report.why.contains(why), "{}", report.why);
+    let fewer = Pslg::new(many.points()[1..].to_vec(), vec![]).unwrap();
+    let report = triangulate(&fewer, &few(&selection)).unwrap().report;
+    assert!(
+        report.backend == "cpu" && report.why.contains("beside 2 threads a GPU pays from 500000 on"),
+        "{}",
+        report.why
+    );
 }
 
 #[test]

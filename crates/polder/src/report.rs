@@ -78,6 +78,8 @@ pub struct DeviceReport {
     pub driver: String,
     /// How signs were decided on it.
     pub arithmetic: &'static str,
+    /// Seconds that opening it and making its kernels took, if that was part of the call.
+    pub opening_seconds: Option<f64>,
     /// Times that the host waited for it, transfers not counted.
     pub host_waits: u32,
     /// Kernels dispatched.

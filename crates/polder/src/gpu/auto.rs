@@ -4,14 +4,19 @@ use super::Gpu;
 use crate::{Error, Options, Output, cpu};
 use polder_mesh::Pslg;
 use polder_vulkan::{Device, DeviceKind, DeviceOptions};
+use std::time::Instant;
 
-/// From so many points on [`Backend::Auto`](crate::Backend::Auto) looks for a GPU: below, opening it takes about as long as
-/// the CPU needs for everything.
+/// From so many points on [`Backend::Auto`](crate::Backend::Auto) looks for a GPU, and from half as many where the CPU may
+/// use eight threads or fewer: below, opening it takes longer than the CPU needs for everything.
 ///
-/// Measured on an NVIDIA H200 beside 16 cores: the CPU takes 0.19 s for a million uniform points and 2.1 s for ten, the GPU
-/// from host to host 0.02 s and 0.11 s once it is open. Opening it took 3.4 s with every kernel to be compiled, which happens
-/// once on a machine; with kernels from the cache a few tenths of a second are assumed here, not measured.
-pub const AUTO_FROM: usize = 2_000_000;
+/// Measured on an NVIDIA H200 and its host, in a process that triangulates uniform points once. With kernels from the cache
+/// on disk, opening takes 175 ms (Vulkan 65, the device 70, the self-test 25, kernels 13), and a million points then 15 ms.
+/// The CPU takes 208 ms for them with 16 threads, 302 with 8, 360 with 4, 558 with one; so both take as long for about
+/// 900,000, 600,000, 500,000 and 300,000 points. The first opening on a machine compiles all kernels: 0.66 s with 16 threads,
+/// 3.5 s with one. Whoever triangulates more than once opens a [`Gpu`] and keeps it.
+pub const AUTO_FROM: usize = 1_000_000;
+/// The most threads that count as few.
+const FEW_THREADS: usize = 8;
 
 fn device_options(options: &Options) -> DeviceOptions {
     DeviceOptions { selection: options.device.clone(), ..DeviceOptions::default() }
@@ -20,7 +25,19 @@ fn device_options(options: &Options) -> DeviceOptions {
 /// On a Vulkan device, or not at all.
 pub(crate) fn vulkan(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     refuse_constraints(pslg)?;
-    Gpu::open(&device_options(options))?.triangulate(pslg, options)
+    let start = Instant::now();
+    let mut gpu = Gpu::open(&device_options(options))?;
+    let opening = start.elapsed().as_secs_f64();
+    Ok(opened(gpu.triangulate(pslg, options)?, opening))
+}
+
+/// Says what opening the device took.
+fn opened(mut output: Output, seconds: f64) -> Output {
+    output.report.seconds += seconds;
+    if let Some(device) = &mut output.report.device {
+        device.opening_seconds = Some(seconds);
+    }
+    output
 }
 
 pub(super) fn refuse_constraints(pslg: &Pslg) -> Result<(), Error> {
@@ -34,27 +51,38 @@ pub(super) fn refuse_constraints(pslg: &Pslg) -> Result<(), Error> {
 /// On a GPU where that pays and works, else on the CPU; the report says why.
 pub(crate) fn auto(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     let points = pslg.points().len();
-    if points < AUTO_FROM {
-        return on_cpu(pslg, options, format!("{points} points; a GPU pays from {AUTO_FROM} on"));
+    let threads = if options.threads == 0 { rayon::current_num_threads() } else { options.threads };
+    let from = if threads > FEW_THREADS { AUTO_FROM } else { AUTO_FROM / 2 };
+    if points < from {
+        return on_cpu(pslg, options, format!("{points} points; beside {threads} threads a GPU pays from {from} on"));
     }
-    match on_gpu(pslg, options) {
-        Ok(mut output) => {
-            output.report.why = format!("a GPU, and {points} points; it pays from {AUTO_FROM} on");
+    let start = Instant::now();
+    let mut gpu = match refuse_constraints(pslg).and_then(|()| open(options)) {
+        Ok(gpu) => gpu,
+        Err(error) => return on_cpu(pslg, options, format!("no GPU: {error}")),
+    };
+    let opening = start.elapsed().as_secs_f64();
+    match gpu.triangulate(pslg, options) {
+        Ok(output) => {
+            let mut output = opened(output, opening);
+            output.report.why = format!("a GPU, and {points} points; beside {threads} threads it pays from {from} on");
             Ok(output)
         }
         Err(error @ Error::Cancelled(_)) => Err(error),
-        Err(error) => on_cpu(pslg, options, format!("no GPU: {error}")),
+        Err(error) => {
+            drop(gpu);
+            on_cpu(pslg, options, format!("the GPU failed: {error}"))
+        }
     }
 }
 
-fn on_gpu(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
-    refuse_constraints(pslg)?;
+fn open(options: &Options) -> Result<Gpu, Error> {
     let device = Device::open(&device_options(options))?;
     if device.info().kind == DeviceKind::Cpu {
         let what = format!("{} is a CPU", device.info().name);
         return Err(Error::Unsupported { what });
     }
-    Gpu::on(&device)?.triangulate(pslg, options)
+    Gpu::on(&device)
 }
 
 fn on_cpu(pslg: &Pslg, options: &Options, why: String) -> Result<Output, Error> {

@@ -214,6 +214,7 @@ impl Gpu {
                 Arithmetic::Filtered => "f64 first, then integers",
                 Arithmetic::Integers => "integers",
             },
+            opening_seconds: None,
             host_waits: runs.iter().map(|run| run.waits).sum(),
             dispatches: runs.iter().map(|run| run.dispatches).sum(),
             peak_bytes: self.device.memory_use().peak,
