@@ -205,9 +205,9 @@ fn a_wait_for_each_bad_guess_and_one_for_all_good_ones() {
     };
     for (firsts, waits, counted) in [
         ([3, 9, 2, 5, 1], 1, [3, 9, 2, 5, 1]),
-        // The second loop goes on by 4 and by 8, the fourth by 4.
-        ([3, 2, 2, 1, 1], 4, [3, 14, 2, 5, 1]),
-        ([1, 9, 2, 5, 1], 2, [5, 9, 2, 5, 1]),
+        // The second loop goes on by 4 and by 8, and those behind it begin with 4 rounds more.
+        ([3, 2, 2, 1, 1], 3, [3, 14, 6, 5, 5]),
+        ([1, 9, 2, 5, 1], 2, [5, 13, 6, 9, 5]),
     ] {
         let (_, report) = world.run(&ops(firsts), rounds, true);
         assert_eq!(report.rounds.iter().map(|(_, rounds)| *rounds).collect::<Vec<_>>(), counted);

@@ -268,7 +268,8 @@ impl Recording {
     /// done, and looks at all such loops at once, at the end of the recording or at the next plain `repeat`. Where one
     /// was not done, nothing behind it has run: the device itself leaves it out. The host then runs that loop on, and what
     /// follows, in the same way: by `batch` rounds, twice as many after the next look, up to 64 times. So a good guess
-    /// costs no wait, and a bad one hardly more than the plain loop.
+    /// costs no wait, and a bad one hardly more than the plain loop. Loops behind one that was not done begin with `first`
+    /// and `batch` rounds.
     ///
     /// Dispatches behind such a loop take their sizes from memory, fills and copies become kernels; that is nearly free.
     /// Within a repeated body, or where the body repeats something itself, it is a plain loop whose first batch has

@@ -81,7 +81,9 @@ impl<'e, 'o> Run<'e, 'o> {
             match step {
                 Step::Repeat(repeat) if repeat.ahead => {
                     let guard = Guard { step: next, name: repeat.name, rounds: 0, misses: 0 };
-                    self.run_ahead(repeat, repeat.first, guard)?;
+                    // Where one guess was too low those behind it likely are: and all that follows is sent again for each.
+                    let more = if halted.is_some() { repeat.batch } else { 0 };
+                    self.run_ahead(repeat, repeat.first.saturating_add(more), guard)?;
                 }
                 step => self.steps(std::slice::from_ref(step))?,
             }

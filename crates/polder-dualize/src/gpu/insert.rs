@@ -29,9 +29,9 @@ const WORDS: usize = 40;
 const UNSET: usize = 8;
 /// Most workgroups that look for the ends of a chain.
 const END_GROUPS: u32 = 1024;
-/// Rounds before the host looks, and after that.
+/// Rounds before the host looks, and after that: clusters take 19, rings 15.
 const FIRST: u32 = 5;
-const BATCH: u32 = 8;
+const BATCH: u32 = 15;
 
 /// Places of words that the host knows, as in `insert.glsl`.
 #[derive(Clone, Copy)]

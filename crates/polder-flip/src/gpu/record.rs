@@ -63,7 +63,7 @@ impl Stage {
         let round = Round { mesh, buffers, also: None, tally, scope: Scope::All };
         self.test_mesh(recording, round);
         let bound = u32::try_from(round_bound(mesh.capacity())).unwrap_or(u32::MAX);
-        recording.repeat_ahead("flip", buffers.pending()?, bound, 1, 2, |body| {
+        recording.repeat_ahead("flip", buffers.pending()?, bound, 1, 3, |body| {
             for turn in 0..WIDE {
                 self.advance(body, round, turn % 2, FEW);
             }
