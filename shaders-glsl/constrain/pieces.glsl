@@ -14,6 +14,7 @@
 #include "buffers.glsl"
 
 BUFFER(U32x4, uvec4, 16, );
+BUFFER(ReadU32x2, uvec2, 8, readonly);
 
 const uint NO_PIECE = 0xffffffffu;
 
@@ -21,7 +22,7 @@ uint piece_number(uvec4 piece) {
     return piece.y >> 16;
 }
 
-uint piece_count(uvec4 piece) {
+uint piece_count_of(uvec4 piece) {
     return piece.y & 0xffffu;
 }
 
@@ -32,7 +33,7 @@ uint first_piece(uvec4 piece, uint p) {
 
 // Behind the last one, for the first.
 uint pieces_end(uvec4 piece, uint first) {
-    return first + piece_count(piece) - 1u;
+    return first + piece_count_of(piece) - 1u;
 }
 
 // Of the pieces from one place to another, where the first begins that has a beginning.

@@ -7,12 +7,12 @@ layout(push_constant, std430) uniform Args {
     U32x4 pieces;
     U32 piece_met;
     U32 lengths;
-    ReadU32 words;
+    ReadU32 piece_count;
     uint piece_limit;
 };
 
 void main() {
-    uint count = min(words.at[PIECES], piece_limit);
+    uint count = min(piece_count.at[0], piece_limit);
     for (uint p = item_index(); p < count; p += item_stride()) {
         uvec4 piece = pieces.at[p];
         if (piece_number(piece) > pieces.at[first_piece(piece, p)].w) {

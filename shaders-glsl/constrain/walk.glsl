@@ -11,7 +11,6 @@
 #include "pieces.glsl"
 
 BUFFER(U32x2, uvec2, 8, );
-BUFFER(ReadU32x2, uvec2, 8, readonly);
 BUFFER(WriteU32x2, uvec2, 8, writeonly);
 
 const uint CROSSES = 0x80000000u;
@@ -20,9 +19,10 @@ const uint CROSSES = 0x80000000u;
 const uint REVERSED = 0x80000000u;
 const uint MET = 0x7fffffffu;
 
-// The words that steer. Items that go on, those of the next round, and which list holds the former.
+// The words that steer. Items that go on, those of the next round (before the first, the constraints that walk), and which
+// list holds the former.
 const uint WAITING = 0u;
-const uint NEXT = 1u;
+const uint NEXT = 24u;
 const uint PARITY = 2u;
 const uint ROUND = 3u;
 // Workgroups for them.
@@ -33,11 +33,9 @@ const uint WALKERS = 7u;
 const uint STOPS = 8u;
 // The lowest constraint whose walk was lost; NONE before.
 const uint LOST_WALK = 12u;
-// Later pieces, also those for which there was no room.
-const uint PIECES = 16u;
 // Sub-constraints, and vertices in all chains.
-const uint SUB_CONSTRAINTS = 20u;
-const uint CHAINED = 24u;
+const uint SUB_CONSTRAINTS = 16u;
+const uint CHAINED = 20u;
 
 // No list is to grow so long that its count wraps around.
 const uint MOST_STOPS = 0xf0000000u;

@@ -5,6 +5,7 @@
 
 layout(push_constant, std430) uniform Args {
     U32 words;
+    ReadU32 piece_count;
     uint piece_limit;
     uint begins;
 };
@@ -16,7 +17,7 @@ void main() {
     uint waiting = words.at[NEXT];
     if (begins != 0u) {
         words.at[WALKERS] = waiting;
-        waiting += min(words.at[PIECES], piece_limit);
+        waiting += min(piece_count.at[0], piece_limit);
         words.at[ROUND] = 0u;
         words.at[PARITY] = 0u;
     } else {

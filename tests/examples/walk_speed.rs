@@ -3,6 +3,7 @@
 //! Meshes are what stages 1 to 4 leave on the device.
 
 use glam::DVec2;
+use polder_constrain::gpu::pieces::Grid;
 use polder_constrain::gpu::walk::{Input, Names, Stage};
 use polder_constrain::reference;
 use polder_dualize::gpu::{dualize, insert, shift, to_insert};
@@ -144,14 +145,27 @@ fn measure(device: &Device, case: &str, pslg: &Pslg) -> Result<(), Failure> {
     let constraints = uploaded(device, &mut engine, pslg.constraints())?;
     let (order, vertex_of) = (uploaded(device, &mut engine, &order)?, uploaded(device, &mut engine, &vertex_of)?);
     let names = Some(Names { order: order.view(), vertex_of: vertex_of.view() });
-    let mut recording = Recording::new(device);
-    let read = stage.record(&mut recording, &mesh, &buffers, Input { constraints: constraints.view(), names })?;
-    let report = engine.run(&recording, &RunOptions::default())?;
-    let counts = read.result(&report)?;
-    let chains = engine.download_vec(buffers.chains())?;
-    let equal = expected.chains.iter().flatten().eq(chains[..counts.chained as usize].iter());
-    println!("  chains are equal: {equal}; {counts:?}, {} bytes", memory(positions.len(), count));
-    time(&mut engine, &recording)
+    let corner = |f: fn(DVec2, DVec2) -> DVec2| positions.iter().copied().reduce(f).unwrap_or_default();
+    let grid = Grid::over(corner(DVec2::min), corner(DVec2::max), positions.len());
+    println!("  {counts} bytes", counts = memory(positions.len(), count));
+    for grid in [Some(grid), None] {
+        let mut recording = Recording::new(device);
+        let input = Input { constraints: constraints.view(), names, grid };
+        let read = stage.record(&mut recording, &mesh, &buffers, input)?;
+        let report = engine.run(&recording, &RunOptions::default())?;
+        let counts = read.result(&report)?;
+        let chains = engine.download_vec(buffers.chains())?;
+        let equal = expected.chains.iter().flatten().eq(chains[..counts.chained as usize].iter());
+        println!("  {}: chains are equal: {equal}; {counts:?}", if grid.is_some() { "in pieces" } else { "whole" });
+        if grid.is_some() {
+            let pieces = engine.download_vec(buffers.pieces().pieces())?;
+            let room = pieces.len().min(engine.download_vec(buffers.pieces().count())?[0] as usize);
+            let found = pieces[..room].iter().filter(|piece| piece[2] != u32::MAX).count();
+            println!("  {room} later pieces, {found} of them have a beginning");
+        }
+        time(&mut engine, &recording)?;
+    }
+    Ok(())
 }
 
 fn memory(vertices: usize, constraints: usize) -> u64 {

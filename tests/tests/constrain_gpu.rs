@@ -5,6 +5,7 @@
 mod vulkan_support;
 
 use glam::DVec2;
+use polder_constrain::gpu::pieces::Grid;
 use polder_constrain::gpu::walk::{Buffers, Counts, Input, Names, Read, Stage};
 use polder_constrain::{ConstrainError, Walk, reference};
 use polder_flip::gpu::{Arithmetic, Mesh};
@@ -52,7 +53,13 @@ struct On {
     recording: polder_vulkan::Recording,
 }
 
-fn record(gpu: &mut Gpu, stage: &Stage, case: &Case, stops: usize) -> On {
+/// A grid over all points.
+fn grid(positions: &[DVec2]) -> Grid {
+    let [low, high] = [DVec2::min, DVec2::max].map(|f| positions.iter().copied().reduce(f).unwrap());
+    Grid::over(low, high, positions.len())
+}
+
+fn record(gpu: &mut Gpu, stage: &Stage, case: &Case, stops: usize, grid: Option<Grid>) -> On {
     let vertices = case.positions.len();
     let mesh = Mesh::new(&gpu.device, vertices).unwrap();
     mesh.upload(&mut gpu.engine, &case.mesh, &case.positions).unwrap();
@@ -61,7 +68,7 @@ fn record(gpu: &mut Gpu, stage: &Stage, case: &Case, stops: usize) -> On {
     let vertex_of = gpu.buffer(&case.vertex_of);
     let names = Some(Names { order: order.view(), vertex_of: vertex_of.view() });
     let mut recording = gpu.recording();
-    let input = Input { constraints: constraints.view(), names };
+    let input = Input { constraints: constraints.view(), names, grid };
     let read = stage.record(&mut recording, &mesh, &buffers, input).unwrap();
     On { buffers, read, recording }
 }
@@ -94,7 +101,11 @@ impl On {
 fn assert_walked(gpu: &mut Gpu, stage: &Stage, name: &str, case: &Case) {
     let chained: usize = case.expected.chains.iter().map(<[u32]>::len).sum();
     let room = Stage::usual_stops(case.constraints.len()).max(chained);
-    record(gpu, stage, case, room).assert(gpu, name, case);
+    let grid = grid(&case.positions);
+    // Whole, in pieces as they should be, and in pieces of a triangle or so.
+    for grid in [None, Some(grid), Some(grid.with_piece_length(64)), Some(grid.with_piece_length(1))] {
+        record(gpu, stage, case, room, grid).assert(gpu, name, case);
+    }
 }
 
 #[test]
@@ -166,10 +177,10 @@ fn too_little_room_says_how_much_is_needed() {
     let case = Case::new(&Pslg::new(points, constraints).unwrap());
     let needed = 41 * 38;
     for room in [0, 1, needed as usize - 1] {
-        let error = record(&mut gpu, &stage, &case, room).result(&mut gpu).unwrap_err();
+        let error = record(&mut gpu, &stage, &case, room, None).result(&mut gpu).unwrap_err();
         assert_eq!(error, ConstrainError::TooManyStops { needed, room: room as u32 });
     }
-    record(&mut gpu, &stage, &case, needed as usize).assert(&mut gpu, "lattice", &case);
+    record(&mut gpu, &stage, &case, needed as usize, None).assert(&mut gpu, "lattice", &case);
 }
 
 #[test]
@@ -181,7 +192,7 @@ fn a_hull_that_is_not_convex_loses_the_walk() {
     let own = vec![0, 1, 2];
     let case = Case { mesh, positions, constraints, order: own.clone(), vertex_of: own, expected: Walk::default() };
     for stage in &stages {
-        let error = record(&mut gpu, stage, &case, 9).result(&mut gpu).unwrap_err();
+        let error = record(&mut gpu, stage, &case, 9, None).result(&mut gpu).unwrap_err();
         assert_eq!(error, ConstrainError::WalkLost { constraint: 1 });
     }
 }

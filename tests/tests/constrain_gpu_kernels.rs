@@ -18,13 +18,12 @@ use vulkan_support::Gpu;
 
 /// Places of words, as in `walk.glsl`.
 const WAITING: usize = 0;
-const NEXT: usize = 1;
+const NEXT: usize = 24;
 const WALKERS: usize = 7;
 const STOPS: usize = 8;
 const LOST_WALK: usize = 12;
-const PIECES: usize = 16;
-const SUB_CONSTRAINTS: usize = 20;
-const CHAINED: usize = 24;
+const SUB_CONSTRAINTS: usize = 16;
+const CHAINED: usize = 20;
 /// The mark of a walk from the second end to the first.
 const REVERSED: u32 = 1 << 31;
 
@@ -178,11 +177,12 @@ fn walk_turn() {
             let mut words: Vec<u32> = vulkan_support::words(seed as u64, 28);
             words[2] &= 1;
             words[3] &= 0xff;
-            (words[1], words[16]) = (counts[0], counts[1]);
-            let on = gpu.buffer(&words);
-            let arguments = WalkTurnArgs { words: on.view(), piece_limit: 8, begins: begins.into() };
+            words[NEXT] = counts[0];
+            let (on, pieces) = (gpu.buffer(&words), gpu.buffer(&[counts[1]]));
+            let arguments =
+                WalkTurnArgs { words: on.view(), piece_count: pieces.view(), piece_limit: 8, begins: begins.into() };
             run(&mut gpu, &kernel, 1, &arguments);
-            expected::walk_turn(&mut words, 8, begins);
+            expected::walk_turn(&mut words, counts[1].min(8), begins);
             assert_eq!(gpu.fetch(on.view()), words);
         }
     }
@@ -308,16 +308,15 @@ fn trim_pieces() {
             lengths[c as usize] = met[c as usize].len() as u32 + 2;
         }
         let words_of: Vec<[u32; 4]> = pieces.iter().map(Piece::words).collect();
-        let mut words = [0; 28];
-        words[PIECES] = pieces.len() as u32;
         let (on_pieces, on_met) = (gpu.buffer(&words_of), gpu.buffer(&piece_met));
-        let (on_lengths, words) = (gpu.buffer(&lengths), gpu.buffer(&words));
+        let (on_lengths, room) = (gpu.buffer(&lengths), pieces.len() as u32);
+        let piece_count = gpu.buffer(&[room]);
         let arguments = TrimPiecesArgs {
             pieces: on_pieces.view(),
             piece_met: on_met.view(),
             lengths: on_lengths.view(),
-            words: words.view(),
-            piece_limit: pieces.len() as u32,
+            piece_count: piece_count.view(),
+            piece_limit: room,
         };
         run(&mut gpu, &kernel, 1, &arguments);
         expected::trim_pieces(&pieces, &mut piece_met, &mut lengths);

@@ -237,6 +237,95 @@ impl Shader for DepartWalks {
     }
 }
 
+/// Long walks in pieces, 2 of 2: where each later piece begins. Near the point that divides the walker a vertex to the left of
+/// it is looked for, and one to the right, and the mesh is walked from the one to the other. On the way is an edge that the
+/// walker crosses for certain: its ends lie on different sides of the walker, and the walker's on different sides of it.
+#[derive(Debug, Clone, Copy)]
+pub enum FindBeginnings {}
+
+/// Arguments of [`FindBeginnings`].
+#[derive(Debug, Clone, Copy)]
+pub struct FindBeginningsArgs<'a> {
+    /// read
+    pub triangles: View<'a, u32>,
+    /// read
+    pub links: View<'a, u32>,
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub ends: View<'a, [u32; 2]>,
+    /// read
+    pub spokes: View<'a, u32>,
+    /// read
+    pub degrees: View<'a, u32>,
+    /// read
+    pub seeds: View<'a, u32>,
+    /// read and written
+    pub pieces: View<'a, [u32; 4]>,
+    /// read
+    pub piece_count: View<'a, u32>,
+    /// a value
+    pub low_x: i64,
+    /// a value
+    pub low_y: i64,
+    /// a value
+    pub exponent: i32,
+    /// a value
+    pub width: u32,
+    /// a value
+    pub height: u32,
+    /// a value
+    pub piece_limit: u32,
+}
+
+impl Shader for FindBeginnings {
+    type Args<'a> = FindBeginningsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "find_beginnings",
+        words: include_spirv!("../spv/find_beginnings.spv"),
+        without_float64: Some(include_spirv!("../spv/find_beginnings.integers.spv")),
+        argument_bytes: 104,
+        buffers: &[
+            BufferArgument { name: "triangles", offset: 0, access: Access::Read },
+            BufferArgument { name: "links", offset: 8, access: Access::Read },
+            BufferArgument { name: "positions", offset: 16, access: Access::Read },
+            BufferArgument { name: "ends", offset: 24, access: Access::Read },
+            BufferArgument { name: "spokes", offset: 32, access: Access::Read },
+            BufferArgument { name: "degrees", offset: 40, access: Access::Read },
+            BufferArgument { name: "seeds", offset: 48, access: Access::Read },
+            BufferArgument { name: "pieces", offset: 56, access: Access::ReadWrite },
+            BufferArgument { name: "piece_count", offset: 64, access: Access::Read },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[
+            Constant { name: "WORKGROUP", id: 0, default: 256 },
+            Constant { name: "ARITHMETIC", id: 1, default: 0 },
+        ],
+        capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "c0ae398fc9cf2321a5b91cde332a3d66bfd0b1cb1e70682e006d103b62ad4635",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.triangles);
+        encoder.buffer(8, args.links);
+        encoder.buffer(16, args.positions);
+        encoder.buffer(24, args.ends);
+        encoder.buffer(32, args.spokes);
+        encoder.buffer(40, args.degrees);
+        encoder.buffer(48, args.seeds);
+        encoder.buffer(56, args.pieces);
+        encoder.buffer(64, args.piece_count);
+        encoder.value(72, args.low_x);
+        encoder.value(80, args.low_y);
+        encoder.value(88, args.exponent);
+        encoder.value(92, args.width);
+        encoder.value(96, args.height);
+        encoder.value(100, args.piece_limit);
+    }
+}
+
 /// Which constraints are edges: found by the numbers of vertices alone. The others are listed. A walk begins at the end with
 /// fewer edges, of two like ones at the first.
 #[derive(Debug, Clone, Copy)]
@@ -289,7 +378,7 @@ impl Shader for FindEdges {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "6b02370be531bc77a54ba5f415b0dad8d70b1899af1cfaa5a04126d95c81f38b",
+        source_hash: "159f721e90502dba532ce25f7c359a2ffba7d47bc4195e62d2fafda34e1e967e",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -479,7 +568,7 @@ impl Shader for ListSubConstraints {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "98dcf162be5fea54c97565198d2b824ee7c36047fdf0a25e0e0edf78c3831267",
+        source_hash: "5c0e911a6c5e50b728e9a4b1850ebf5d20f59b9d52cba12beee13f751ed13396",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -818,7 +907,7 @@ impl Shader for PlaceChains {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "40f3c537ffc24ee94dcd8d5100bfdcf8fbd3b78f6c550e011425821e6d50c240",
+        source_hash: "dc4a1eee0a1b84642662189b88c64323b8a91999a6a7d3519cebacfbd91a3e46",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -836,6 +925,143 @@ impl Shader for PlaceChains {
     }
 }
 
+/// Long walks in pieces, 1 of 2: how many pieces each listed walker has, and where its later ones stand.
+#[derive(Debug, Clone, Copy)]
+pub enum PlanPieces {}
+
+/// Arguments of [`PlanPieces`].
+#[derive(Debug, Clone, Copy)]
+pub struct PlanPiecesArgs<'a> {
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub ends: View<'a, [u32; 2]>,
+    /// read
+    pub list: View<'a, u32>,
+    /// read
+    pub listed: View<'a, u32>,
+    /// written
+    pub runs: View<'a, u32>,
+    /// read and written
+    pub pieces: View<'a, [u32; 4]>,
+    /// read and written
+    pub piece_count: View<'a, u32>,
+    /// a value
+    pub low_x: i64,
+    /// a value
+    pub low_y: i64,
+    /// a value
+    pub exponent: i32,
+    /// a value
+    pub limit: u32,
+    /// a value
+    pub piece_limit: u32,
+    /// a value
+    pub piece_length: u32,
+}
+
+impl Shader for PlanPieces {
+    type Args<'a> = PlanPiecesArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "plan_pieces",
+        words: include_spirv!("../spv/plan_pieces.spv"),
+        without_float64: None,
+        argument_bytes: 88,
+        buffers: &[
+            BufferArgument { name: "positions", offset: 0, access: Access::Read },
+            BufferArgument { name: "ends", offset: 8, access: Access::Read },
+            BufferArgument { name: "list", offset: 16, access: Access::Read },
+            BufferArgument { name: "listed", offset: 24, access: Access::Read },
+            BufferArgument { name: "runs", offset: 32, access: Access::Write },
+            BufferArgument { name: "pieces", offset: 40, access: Access::ReadWrite },
+            BufferArgument { name: "piece_count", offset: 48, access: Access::ReadWrite },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "a8e8a875436aa8044e01501cb246b0e702022a69b8180a059b4cc7a3057e8643",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.positions);
+        encoder.buffer(8, args.ends);
+        encoder.buffer(16, args.list);
+        encoder.buffer(24, args.listed);
+        encoder.buffer(32, args.runs);
+        encoder.buffer(40, args.pieces);
+        encoder.buffer(48, args.piece_count);
+        encoder.value(56, args.low_x);
+        encoder.value(64, args.low_y);
+        encoder.value(72, args.exponent);
+        encoder.value(76, args.limit);
+        encoder.value(80, args.piece_limit);
+        encoder.value(84, args.piece_length);
+    }
+}
+
+/// Puts up to two vertices that lie in a cell of the grid into it: some with an even priority, and some with an odd one, so that
+/// they come from anywhere in the cell. Of all that lie there any may be the last to come.
+#[derive(Debug, Clone, Copy)]
+pub enum SowSeeds {}
+
+/// Arguments of [`SowSeeds`].
+#[derive(Debug, Clone, Copy)]
+pub struct SowSeedsArgs<'a> {
+    /// read
+    pub positions: View<'a, [u32; 4]>,
+    /// read
+    pub spokes: View<'a, u32>,
+    /// written
+    pub seeds: View<'a, u32>,
+    /// a value
+    pub low_x: i64,
+    /// a value
+    pub low_y: i64,
+    /// a value
+    pub exponent: i32,
+    /// a value
+    pub width: u32,
+    /// a value
+    pub height: u32,
+    /// a value
+    pub vertices: u32,
+}
+
+impl Shader for SowSeeds {
+    type Args<'a> = SowSeedsArgs<'a>;
+
+    const CODE: Code = Code {
+        name: "sow_seeds",
+        words: include_spirv!("../spv/sow_seeds.spv"),
+        without_float64: None,
+        argument_bytes: 56,
+        buffers: &[
+            BufferArgument { name: "positions", offset: 0, access: Access::Read },
+            BufferArgument { name: "spokes", offset: 8, access: Access::Read },
+            BufferArgument { name: "seeds", offset: 16, access: Access::Write },
+        ],
+        workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
+        constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
+        capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "c03e7135fb2e67c59ae134fd1c5978b4ea977935f555a8b839784d8b56fe7d33",
+        compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
+    };
+
+    fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
+        encoder.buffer(0, args.positions);
+        encoder.buffer(8, args.spokes);
+        encoder.buffer(16, args.seeds);
+        encoder.value(24, args.low_x);
+        encoder.value(32, args.low_y);
+        encoder.value(40, args.exponent);
+        encoder.value(44, args.width);
+        encoder.value(48, args.height);
+        encoder.value(52, args.vertices);
+    }
+}
+
 /// Later pieces that turned out to be superfluous met nothing; what the others met belongs to the chain of their constraint.
 #[derive(Debug, Clone, Copy)]
 pub enum TrimPieces {}
@@ -850,7 +1076,7 @@ pub struct TrimPiecesArgs<'a> {
     /// read and written
     pub lengths: View<'a, u32>,
     /// read
-    pub words: View<'a, u32>,
+    pub piece_count: View<'a, u32>,
     /// a value
     pub piece_limit: u32,
 }
@@ -867,12 +1093,12 @@ impl Shader for TrimPieces {
             BufferArgument { name: "pieces", offset: 0, access: Access::ReadWrite },
             BufferArgument { name: "piece_met", offset: 8, access: Access::ReadWrite },
             BufferArgument { name: "lengths", offset: 16, access: Access::ReadWrite },
-            BufferArgument { name: "words", offset: 24, access: Access::Read },
+            BufferArgument { name: "piece_count", offset: 24, access: Access::Read },
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "db9a1548b0cc939f2a4fc06f491e2144694cb2022ff232b277852eff15b31d3d",
+        source_hash: "e01dac5f7693754be4a8d4441e6a71fe187e5b5428d61dec6c06c23e380e0249",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -880,7 +1106,7 @@ impl Shader for TrimPieces {
         encoder.buffer(0, args.pieces);
         encoder.buffer(8, args.piece_met);
         encoder.buffer(16, args.lengths);
-        encoder.buffer(24, args.words);
+        encoder.buffer(24, args.piece_count);
         encoder.value(32, args.piece_limit);
     }
 }
@@ -957,7 +1183,7 @@ impl Shader for WalkConstraints {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "ae66f1007ab3fcfb827949deb9651daf8fec3ea4f115b7cd3f4582b65e0e213d",
+        source_hash: "e6b385c1fddf931a14358c27b6264c0ac7b28da3f90ce74d1867ee1f01175187",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -991,6 +1217,8 @@ pub enum WalkTurn {}
 pub struct WalkTurnArgs<'a> {
     /// read and written
     pub words: View<'a, u32>,
+    /// read
+    pub piece_count: View<'a, u32>,
     /// a value
     pub piece_limit: u32,
     /// a value
@@ -1004,18 +1232,22 @@ impl Shader for WalkTurn {
         name: "walk_turn",
         words: include_spirv!("../spv/walk_turn.spv"),
         without_float64: None,
-        argument_bytes: 16,
-        buffers: &[BufferArgument { name: "words", offset: 0, access: Access::ReadWrite }],
+        argument_bytes: 24,
+        buffers: &[
+            BufferArgument { name: "words", offset: 0, access: Access::ReadWrite },
+            BufferArgument { name: "piece_count", offset: 8, access: Access::Read },
+        ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "dcac59626e1e10b443c31f1ffb65a7e3199a8c5b97c619425fa691867e715b5f",
+        source_hash: "7d4cb1116801b4244a5ac3f655090806b1275542b715d2be51b54b1a136b528b",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
     fn encode<'a>(args: &Self::Args<'a>, encoder: &mut Encoder<'_, 'a>) {
         encoder.buffer(0, args.words);
-        encoder.value(8, args.piece_limit);
-        encoder.value(12, args.begins);
+        encoder.buffer(8, args.piece_count);
+        encoder.value(16, args.piece_limit);
+        encoder.value(20, args.begins);
     }
 }

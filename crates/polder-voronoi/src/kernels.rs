@@ -656,7 +656,7 @@ impl Shader for MapPoints {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "d0278622ad856c56b99b38be9fc5a11fa6f75ff4a69ebe3cafea485cca82ab1a",
+        source_hash: "6e57aee49321b9c4d7d55368aacb0c0e0ec0be37b8b8f6422f2f4b57b9942a91",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

@@ -1,4 +1,5 @@
 //! The stage on a device, bit for bit what [`reference`](mod@crate::reference) gives.
 
 pub mod insert;
+pub mod pieces;
 pub mod walk;

@@ -2,10 +2,12 @@
 //!
 //! *Items* are the constraints, and behind them the later [pieces](Piece) of long ones.
 
+use crate::gpu::pieces::Grid;
 use crate::reference::fan::{Departure, depart_by_turning, enter, leave};
 use glam::DVec2;
+use polder_flip::priority;
 use polder_mesh::{GhostMesh, NONE};
-use polder_predicates::Sign;
+use polder_predicates::{Sign, orient2d};
 
 /// For every vertex a half-edge that leaves it, or [`NONE`], and how many do. Any half-edge would do: nothing of a result
 /// depends on which it is.
@@ -210,19 +212,91 @@ pub fn list_sub_constraints(chains: &[Vec<u32>]) -> Vec<[u32; 2]> {
 
 /// From one round of walks to the next; before the first, to `walkers` constraints and all later pieces.
 ///
-/// Words: items that go on, items of the next round, which list, the round, three of workgroups, and the constraints of the
-/// first list; at 16 the number of later pieces.
-pub fn walk_turn(words: &mut [u32], piece_limit: u32, begins: bool) {
-    let mut waiting = words[1];
+/// Words: items that go on; at 24 items of the next round; from 2 on which list, the round, three of workgroups, and the
+/// constraints of the first list.
+pub fn walk_turn(words: &mut [u32], pieces: u32, begins: bool) {
+    let waiting = if begins { words[24] + pieces } else { words[24] };
     if begins {
-        words[7] = waiting;
-        waiting += words[16].min(piece_limit);
+        words[7] = words[24];
     }
     let (parity, round) = (words[2], words[3]);
-    let [x, y, z] = polder_vulkan::groups_for(waiting as usize, 256);
     words[0] = waiting;
-    words[1] = 0;
+    words[24] = 0;
     words[2] = if begins { 0 } else { 1 - parity };
     words[3] = if begins { 0 } else { round + 1 };
-    words[4..7].copy_from_slice(&[x, y, z]);
+    words[4..7].copy_from_slice(&polder_vulkan::groups_for(waiting as usize, 256));
+}
+
+/// Up to two vertices of each cell of a grid, one with an even priority and one with an odd one, or [`NONE`]. Any would do.
+pub fn sow_seeds(positions: &[DVec2], spokes: &[u32], grid: &Grid) -> Vec<[u32; 2]> {
+    let [width, height] = grid.size();
+    let mut seeds = vec![[NONE; 2]; width as usize * height as usize];
+    for (v, &p) in positions.iter().enumerate().filter(|(v, _)| spokes[*v] != NONE) {
+        seeds[grid.cell(p)][priority(v as u32) as usize & 1] = v as u32;
+    }
+    seeds
+}
+
+/// How many pieces each listed walker has.
+pub fn plan_pieces(positions: &[DVec2], ends: &[[u32; 2]], list: &[u32], grid: &Grid) -> Vec<u32> {
+    list.iter().map(|&walker| grid.pieces(ends[walker as usize].map(|v| positions[v as usize]))).collect()
+}
+
+/// The half-edges by which a walk from one vertex to another leaves triangles, from right to left.
+fn crossed_between(mesh: &GhostMesh, positions: &[DVec2], spokes: &[u32], [from, to]: [u32; 2]) -> Vec<u32> {
+    let line = [from, to].map(|v| positions[v as usize]);
+    let mut crossed = Vec::new();
+    let mut v = from;
+    while v != to {
+        v = match depart_by_turning(mesh, positions, spokes[v as usize], to) {
+            None => return crossed,
+            Some(Departure::Along(h)) => {
+                crossed.push(h);
+                mesh.destination(h)
+            }
+            Some(Departure::Across(mut h)) => loop {
+                crossed.push(h);
+                let Some((g, side)) = enter(mesh, positions, h, line) else { return crossed };
+                if side == Sign::Zero {
+                    break mesh.apex(g);
+                }
+                h = leave(g, side);
+            },
+        };
+    }
+    crossed
+}
+
+/// An edge that is crossed by the line between two vertices, by its half-edge that begins to the right of it: the first on
+/// the way from a vertex to the left to one to the right. Of the candidates, the first of either kind are tried, then the
+/// first among the rest, and so on.
+pub fn find_beginnings(
+    mesh: &GhostMesh,
+    positions: &[DVec2],
+    spokes: &[u32],
+    line: [u32; 2],
+    candidates: &[u32],
+) -> Option<u32> {
+    let at = |v: u32| positions[v as usize];
+    let [a, b] = line.map(at);
+    let side = |v: u32| orient2d(a, b, at(v));
+    let apart = |p: Sign, q: Sign| p != Sign::Zero && p as i8 == -(q as i8);
+    let [mut left, mut right] = [None; 2];
+    for &v in candidates {
+        match side(v) {
+            Sign::Positive => left = left.or(Some(v)),
+            Sign::Negative => right = right.or(Some(v)),
+            Sign::Zero => {}
+        }
+        let (Some(first), Some(second)) = (left, right) else { continue };
+        [left, right] = [None; 2];
+        for h in crossed_between(mesh, positions, spokes, [first, second]) {
+            let (u, v) = (mesh.origin(h), mesh.destination(h));
+            let across = |p: DVec2| orient2d(at(u), at(v), p);
+            if apart(side(u), side(v)) && apart(across(a), across(b)) {
+                return Some(if side(u) == Sign::Negative { h } else { mesh.twin(h) });
+            }
+        }
+    }
+    None
 }

@@ -17,30 +17,22 @@
 //! Memory: 8 bytes a vertex, 32 a constraint, and 24 for each vertex that may be met. A constraint that is an edge reads a
 //! row of the mesh for each spoke that it looks at, half of them on average.
 
+mod buffers;
+
+pub use buffers::Buffers;
+
+use super::pieces::{self, Grid, Walkers, strides};
 use crate::ConstrainError;
 use crate::kernels::*;
+use buffers::Word;
 use polder_flip::gpu::{Arithmetic, Mesh};
-use polder_vulkan::primitives::Scan;
-use polder_vulkan::{
-    Buffer, Device, DeviceKind, Error, Estimate, Kernel, Pool, ReadBack, Recording, RunReport, View, groups_for,
-};
+use polder_vulkan::primitives::Count;
+use polder_vulkan::{Device, DeviceKind, Error, Estimate, Kernel, ReadBack, Recording, RunReport, View, groups_for};
 
 const NONE: u32 = u32::MAX;
 const WORKGROUP: u32 = 256;
-const WORDS: usize = 28;
 /// Workgroups of kernels that stride over lists whose length only the device knows.
 const GROUPS: u32 = 1056;
-
-/// Places of words that the host knows, as in `walk.glsl`.
-#[derive(Clone, Copy)]
-enum Word {
-    Waiting = 0,
-    Groups = 4,
-    Stops = 8,
-    Lost = 12,
-    SubConstraints = 20,
-    Chained = 24,
-}
 
 /// The input's points in the order of the mesh, and which vertices they are.
 #[derive(Clone, Copy, Debug)]
@@ -58,136 +50,8 @@ pub struct Input<'a> {
     pub constraints: View<'a, [u32; 2]>,
     /// Where ends are points of the input. Without, they are vertices.
     pub names: Option<Names<'a>>,
-}
-
-/// What the stage holds beside the mesh.
-#[derive(Debug)]
-pub struct Buffers {
-    constraints: usize,
-    pieces_room: usize,
-    stops_room: usize,
-    spokes: Buffer<u32>,
-    degrees: Buffer<u32>,
-    ends: Buffer<[u32; 2]>,
-    met: Buffer<u32>,
-    offsets: Buffer<u32>,
-    stops: Buffer<[u32; 3]>,
-    /// Before there are chains: where the later pieces of constraints stand.
-    chains: Buffer<u32>,
-    /// Before there are sub-constraints: the state of walks and two lists.
-    sub_constraints: Buffer<[u32; 2]>,
-    pieces: Buffer<[u32; 4]>,
-    piece_met: Buffer<u32>,
-    words: Buffer<u32>,
-    scan: Scan,
-}
-
-/// How much room there is for what.
-#[derive(Clone, Copy)]
-struct Room {
-    vertices: usize,
-    constraints: usize,
-    stops: usize,
-    pieces: usize,
-}
-
-impl Room {
-    fn new(vertices: usize, constraints: usize, stops: usize) -> Self {
-        // Lists lie behind each other, each at a multiple of 16 bytes.
-        Self { vertices, constraints, stops, pieces: 0usize.wrapping_sub(constraints) & 3 }
-    }
-
-    fn items(&self) -> usize {
-        self.constraints + self.pieces
-    }
-
-    fn chains(&self) -> usize {
-        2 * self.constraints + self.stops
-    }
-
-    fn sub_constraints(&self) -> usize {
-        (self.constraints + self.stops).max((3 * self.items()).div_ceil(2))
-    }
-
-    fn estimate(&self) -> Estimate {
-        Estimate::new()
-            .buffer::<u32>("spokes", self.vertices)
-            .buffer::<u32>("degrees", self.vertices)
-            .buffer::<[u32; 2]>("ends of constraints", self.constraints)
-            .buffer::<u32>("vertices met", self.constraints)
-            .buffer::<u32>("offsets of chains", self.constraints + 1)
-            .buffer::<[u32; 3]>("stops", self.stops)
-            .buffer::<u32>("chains", self.chains())
-            .buffer::<[u32; 2]>("sub-constraints", self.sub_constraints())
-            .buffer::<[u32; 4]>("pieces", self.pieces)
-            .buffer::<u32>("vertices met by pieces", self.pieces)
-            .buffer::<u32>("walk words", WORDS)
-            .and(Scan::estimate(self.items().max(self.constraints + 1)))
-    }
-}
-
-impl Buffers {
-    /// Gives all that is not a result; see [`Buffer::give`].
-    pub fn give(&self, pool: &Pool) {
-        self.ends.give(pool);
-        self.met.give(pool);
-        self.stops.give(pool);
-        self.pieces.give(pool);
-        self.piece_met.give(pool);
-    }
-
-    /// For each vertex some half-edge that leaves it; [`NONE`](polder_mesh::NONE) for a point that is no vertex.
-    pub fn spokes(&self) -> View<'_, u32> {
-        self.spokes.view()
-    }
-
-    /// For each vertex how many half-edges leave it.
-    pub fn degrees(&self) -> View<'_, u32> {
-        self.degrees.view()
-    }
-
-    /// The sub-constraints, constraint after constraint and along each: pairs of vertices, the lower one first. Where
-    /// constraints repeat or overlap, theirs stand here repeatedly.
-    pub fn sub_constraints(&self) -> View<'_, [u32; 2]> {
-        self.sub_constraints.view()
-    }
-
-    /// One word: how many there are; none if a walk was lost or there was no room.
-    ///
-    /// # Errors
-    ///
-    /// None.
-    pub fn sub_constraint_count(&self) -> Result<View<'_, u32>, Error> {
-        self.word(Word::SubConstraints, 1)
-    }
-
-    /// For each constraint where its chain begins, and the end of the last one. Its sub-constraints begin at the same
-    /// number, less its own.
-    ///
-    /// # Errors
-    ///
-    /// None.
-    pub fn offsets(&self) -> Result<View<'_, u32>, Error> {
-        self.offsets.slice(0..self.constraints + 1)
-    }
-
-    /// The vertices along the constraints, from first end to second; one for a constraint of zero length.
-    pub fn chains(&self) -> View<'_, u32> {
-        self.chains.view()
-    }
-
-    /// One word: how many vertices all chains have.
-    ///
-    /// # Errors
-    ///
-    /// None.
-    pub fn chained(&self) -> Result<View<'_, u32>, Error> {
-        self.word(Word::Chained, 1)
-    }
-
-    fn word(&self, word: Word, count: usize) -> Result<View<'_, u32>, Error> {
-        self.words.slice(word as usize..word as usize + count)
-    }
+    /// A grid over all points, so that long walks go in pieces.
+    pub grid: Option<Grid>,
 }
 
 /// What came out.
@@ -237,6 +101,7 @@ pub struct Stage {
     name_ends: Kernel<NameEnds>,
     find_spokes: Kernel<FindSpokes>,
     find_edges: Kernel<FindEdges>,
+    pieces: pieces::Stage,
     turn: Kernel<WalkTurn>,
     walk: Kernel<WalkConstraints>,
     trim: Kernel<TrimPieces>,
@@ -270,6 +135,7 @@ impl Stage {
             name_ends: Kernel::new(device, &workgroup)?,
             find_spokes: Kernel::new(device, &workgroup)?,
             find_edges: Kernel::new(device, &workgroup)?,
+            pieces: pieces::Stage::new(device, arithmetic)?,
             turn: Kernel::new(device, &workgroup)?,
             walk: arithmetic.kernel(device, &workgroup)?,
             trim: Kernel::new(device, &workgroup)?,
@@ -291,7 +157,7 @@ impl Stage {
 
     /// What [`Stage::buffers`] will hold.
     pub fn estimate(vertices: usize, constraints: usize, stops: usize) -> Estimate {
-        Room::new(vertices, constraints, stops).estimate()
+        buffers::estimate(vertices, constraints, stops)
     }
 
     /// Memory for so many constraints on a mesh of so many vertices, which meet at most `stops` vertices between their ends.
@@ -300,26 +166,7 @@ impl Stage {
     ///
     /// If the memory cannot be had: then before any of it is allocated.
     pub fn buffers(&self, vertices: usize, constraints: usize, stops: usize) -> Result<Buffers, Error> {
-        let device = &self.device;
-        let room = Room::new(vertices, constraints, stops);
-        room.estimate().check(device)?;
-        Ok(Buffers {
-            constraints,
-            pieces_room: room.pieces,
-            stops_room: stops,
-            spokes: Buffer::new(device, "spokes", vertices)?,
-            degrees: Buffer::new(device, "degrees", vertices)?,
-            ends: Buffer::new(device, "ends of constraints", constraints)?,
-            met: Buffer::new(device, "vertices met", constraints)?,
-            offsets: Buffer::new(device, "offsets of chains", constraints + 1)?,
-            stops: Buffer::new(device, "stops", stops)?,
-            chains: Buffer::new(device, "chains", room.chains())?,
-            sub_constraints: Buffer::new(device, "sub-constraints", room.sub_constraints())?,
-            pieces: Buffer::new(device, "pieces", room.pieces)?,
-            piece_met: Buffer::new(device, "vertices met by pieces", room.pieces)?,
-            words: Buffer::new(device, "walk words", WORDS)?,
-            scan: Scan::new(device, room.items().max(constraints + 1))?,
-        })
+        Buffers::new(&self.device, vertices, constraints, stops)
     }
 
     /// Cuts constraints at the vertices of a triangulation of a convex hull, Delaunay or not.
@@ -347,8 +194,10 @@ impl Stage {
         recording.fill(buffers.word(Word::Lost, 1)?, NONE);
         let ends = self.record_names(recording, buffers, input);
         self.record_spokes(recording, mesh, buffers);
+        self.record_edges(recording, mesh, buffers, ends)?;
+        self.record_pieces(recording, mesh, buffers, ends, input.grid)?;
         self.record_walks(recording, mesh, buffers, ends)?;
-        self.record_chains(recording, buffers, ends);
+        self.record_chains(recording, buffers, ends, input.grid.is_some());
         Ok(Read { words: recording.read(buffers.words.view()), room: buffers.stops_room as u32 })
     }
 
@@ -392,19 +241,13 @@ impl Stage {
         recording.dispatch(&self.find_spokes, groups_for(mesh.capacity(), WORKGROUP), &arguments);
     }
 
-    fn record_walks(
+    fn record_edges(
         &self,
         recording: &mut Recording,
         mesh: &Mesh,
         buffers: &Buffers,
         ends: View<'_, [u32; 2]>,
     ) -> Result<(), Error> {
-        let (count, piece_limit) = (buffers.constraints, buffers.pieces_room as u32);
-        let items = count + buffers.pieces_room;
-        let state = buffers.sub_constraints.view().cast::<u32>();
-        let runs = buffers.chains.view();
-        let words = buffers.words.view();
-        recording.fill(runs.slice(0..count)?, NONE);
         let arguments = FindEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
@@ -413,14 +256,55 @@ impl Stage {
             degrees: buffers.degrees.view(),
             met: buffers.met.view(),
             lengths: buffers.offsets.view(),
-            list: state.slice(items..2 * items)?,
-            words,
-            constraints: count as u32,
+            list: buffers.walkers()?,
+            words: buffers.words.view(),
+            constraints: buffers.constraints as u32,
         };
-        recording.dispatch(&self.find_edges, groups_for(count + 1, WORKGROUP), &arguments);
-        recording.dispatch(&self.turn, [1, 1, 1], &WalkTurnArgs { words, piece_limit, begins: 1 });
+        recording.dispatch(&self.find_edges, groups_for(buffers.constraints + 1, WORKGROUP), &arguments);
+        Ok(())
+    }
+
+    fn record_pieces(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        ends: View<'_, [u32; 2]>,
+        grid: Option<Grid>,
+    ) -> Result<(), Error> {
+        let Some(grid) = grid else {
+            recording.fill(buffers.pieces.count(), 0);
+            recording.fill(buffers.runs()?, NONE);
+            return Ok(());
+        };
+        let spokes = buffers.spokes.view();
+        self.pieces.record_seeds(recording, mesh, spokes, grid, &buffers.pieces)?;
+        let walkers = Walkers {
+            ends,
+            list: buffers.walkers()?,
+            listed: buffers.word(Word::Listed, 1)?,
+            runs: buffers.runs()?,
+            spokes,
+            degrees: buffers.degrees.view(),
+        };
+        self.pieces.record(recording, mesh, &walkers, grid, &buffers.pieces);
+        Ok(())
+    }
+
+    fn record_walks(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        ends: View<'_, [u32; 2]>,
+    ) -> Result<(), Error> {
+        let (words, piece_count) = (buffers.words.view(), buffers.pieces.count());
+        let piece_limit = buffers.pieces.pieces().len() as u32;
+        let turn = |begins| WalkTurnArgs { words, piece_count, piece_limit, begins };
+        recording.dispatch(&self.turn, [1, 1, 1], &turn(1));
         let waiting = buffers.word(Word::Waiting, 1)?;
         let groups = buffers.word(Word::Groups, 3)?;
+        let runs = buffers.runs()?;
         // A walk crosses each edge, or turns over it, from each of its ends once at most.
         let bound = 16 + 8 * (mesh.capacity() as u64) / u64::from(self.most - 1);
         let bound = u32::try_from(bound).unwrap_or(u32::MAX);
@@ -434,31 +318,35 @@ impl Stage {
                 met: buffers.met.view(),
                 lengths: buffers.offsets.view(),
                 runs,
-                pieces: buffers.pieces.view(),
+                pieces: buffers.pieces.pieces().cast(),
                 piece_met: buffers.piece_met.view(),
                 stops: buffers.stops.view().cast(),
-                state,
+                state: buffers.sub_constraints.view().cast(),
                 words,
-                constraints: count as u32,
+                constraints: buffers.constraints as u32,
                 piece_limit,
                 stop_limit: buffers.stops_room as u32,
                 most: self.most,
             };
             round.dispatch_indirect(&self.walk, groups, &arguments);
-            round.dispatch(&self.turn, [1, 1, 1], &WalkTurnArgs { words, piece_limit, begins: 0 });
+            round.dispatch(&self.turn, [1, 1, 1], &turn(0));
         });
         Ok(())
     }
 
-    fn record_chains(&self, recording: &mut Recording, buffers: &Buffers, ends: View<'_, [u32; 2]>) {
+    fn record_chains(&self, recording: &mut Recording, buffers: &Buffers, ends: View<'_, [u32; 2]>, in_pieces: bool) {
         let constraints = buffers.constraints as u32;
         let (met, offsets, words) = (buffers.met.view(), buffers.offsets.view(), buffers.words.view());
-        let (pieces, before) = (buffers.pieces.view(), buffers.piece_met.view());
+        let (pieces, before) = (buffers.pieces.pieces().cast(), buffers.piece_met.view());
         let (stops, stop_limit) = (buffers.stops.view().cast(), buffers.stops_room as u32);
         let chains = buffers.chains.view();
-        let piece_limit = buffers.pieces_room as u32;
-        let arguments = TrimPiecesArgs { pieces, piece_met: before, lengths: offsets, words, piece_limit };
-        recording.dispatch(&self.trim, strides(buffers.pieces_room), &arguments);
+        if in_pieces {
+            let (room, piece_count) = (before.len(), buffers.pieces.count());
+            let piece_limit = room as u32;
+            let arguments = TrimPiecesArgs { pieces, piece_met: before, lengths: offsets, piece_count, piece_limit };
+            recording.dispatch(&self.trim, strides(room), &arguments);
+            buffers.scan.record(recording, Count::on_device(piece_count, room), before, before, None);
+        }
         buffers.scan.record(recording, buffers.constraints + 1, offsets, offsets, None);
         // One invocation a constraint at least; they stride over what the constraints met.
         let most = buffers.stops_room.min((GROUPS * WORKGROUP) as usize);
@@ -490,9 +378,4 @@ impl Stage {
         };
         recording.dispatch(&self.list, groups, &arguments);
     }
-}
-
-/// Workgroups that stride over up to so many items.
-fn strides(items: usize) -> [u32; 3] {
-    [(items as u64).div_ceil(WORKGROUP.into()).clamp(1, GROUPS.into()) as u32, 1, 1]
 }
