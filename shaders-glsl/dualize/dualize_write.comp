@@ -2,7 +2,8 @@
 // it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
 // invocations.
 //
-// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead.
+// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead. Where
+// borders are long, as inside rings, pixels are read by windows instead.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x_id = 0, local_size_x = 256) in;
@@ -27,7 +28,9 @@ layout(push_constant, std430) uniform Args {
 
 const uint ROWS = 14u;
 const uint WORDS = 2u * ROWS;
-// No border of a flooded diagram is nearly as long.
+// Twice so many steps are made one by one.
+const uint SHORT = 4u;
+// No border of a flooded diagram has nearly so many windows.
 const uint LONGEST = 1u << 22;
 
 // For each word of the tile: vertices, those with two triangles, its first slot, triangles before it in the tile.
@@ -94,19 +97,71 @@ bool reaches(uvec2 sides, inout ivec2 at, inout ivec2 step) {
     return found != sides;
 }
 
+// Corners of a window from one side to the other.
+const int SPAN = 5;
+
+// Goes on along a border through a window of pixels that lie ahead, up to a vertex, which it returns true for, or the
+// window's end. Each step alone would wait for memory; here all pixels are read at once.
+bool crosses(uvec2 sides, ivec2 lean, inout ivec2 at, inout ivec2 step) {
+    lean = ivec2(step.x != 0 ? step.x : lean.x, step.y != 0 ? step.y : lean.y);
+    // The lowest pixel and corner.
+    ivec2 low = at - 1 - (SPAN - 1) * ivec2(lessThan(lean, ivec2(0)));
+    uint64_t is_left = 0ul;
+    uint64_t is_right = 0ul;
+    [[unroll]] for (int k = 0; k < (SPAN + 1) * (SPAN + 1); k++) {
+        ivec2 pixel = low + ivec2(k % (SPAN + 1), k / (SPAN + 1));
+        // Outside of the grid some pixel is read, and not used.
+        uint x = uint(clamp(pixel.x, 0, int(width) - 1));
+        uint y = uint(clamp(pixel.y, 0, int(height) - 1));
+        uint color = colors.at[y * width + x];
+        color = uvec2(pixel) == uvec2(x, y) ? color : GHOST;
+        is_left |= uint64_t(color == sides.x) << k;
+        is_right |= uint64_t(color == sides.y) << k;
+    }
+    low += 1;
+    bool inside = true;
+    bool is_vertex = false;
+    [[unroll]] for (int k = 0; k < 2 * (SPAN - 1); k++) {
+        ivec2 next = at + step - low;
+        inside = inside && !is_vertex && next == clamp(next, 0, SPAN - 1);
+        if (inside) {
+            at += step;
+            // As `ahead` and `reaches`.
+            int sum = step.x + step.y - 1 >> 1;
+            ivec2 left = next + 1 + ivec2(step.x - step.y - 1 >> 1, sum);
+            ivec2 right = next + 1 + ivec2(sum, step.y - step.x - 1 >> 1);
+            int l = left.y * (SPAN + 1) + left.x;
+            int r = right.y * (SPAN + 1) + right.x;
+            if ((is_right >> l & 1ul) != 0ul) {
+                step = ivec2(-step.y, step.x);
+            } else if ((is_left >> r & 1ul) != 0ul) {
+                step = ivec2(step.y, -step.x);
+            } else {
+                is_vertex = (is_left >> l & is_right >> r & 1ul) == 0ul;
+            }
+        }
+    }
+    return is_vertex;
+}
+
 // The half-edge where the border that leaves a corner by side s ends.
 uint follow(uint x, uint y, uint s, uvec2 sides) {
     // South, east, north, west as a step.
     ivec2 step = s == 0u ? ivec2(0, -1) : s == 1u ? ivec2(1, 0) : s == 2u ? ivec2(0, 1) : ivec2(-1, 0);
     ivec2 at = ivec2(x, y);
-    // Several steps a turn, since llvmpipe ends all loops of an invocation after 65535 turns.
-    uint steps = 0u;
-    while (!reaches(sides, at, step) && !reaches(sides, at, step) && !reaches(sides, at, step)
-        && !reaches(sides, at, step)) {
-        steps += 4u;
+    // Most borders are short.
+    bool is_vertex = false;
+    for (uint k = 0u; k < SHORT && !is_vertex; k++) {
+        is_vertex = reaches(sides, at, step) || reaches(sides, at, step);
+    }
+    ivec2 lean = at - ivec2(x, y);
+    for (uint steps = 0u; !is_vertex; steps++) {
         if (steps >= LONGEST) {
             return GHOST;
         }
+        ivec2 before = at;
+        is_vertex = crosses(sides, lean, at, step);
+        lean = ivec2(at.x != before.x ? at.x - before.x : lean.x, at.y != before.y ? at.y - before.y : lean.y);
     }
     // It is reached by the opposite side; counterclockwise from there left, right, ahead right, ahead left.
     uvec2 found = ahead(at, step);

@@ -136,7 +136,8 @@ impl Shader for DualizeCount {
 /// it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
 /// invocations.
 ///
-/// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead.
+/// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead. Where
+/// borders are long, as inside rings, pixels are read by windows instead.
 #[derive(Debug, Clone, Copy)]
 pub enum DualizeWrite {}
 
@@ -188,8 +189,8 @@ impl Shader for DualizeWrite {
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
-        capabilities: &["GroupNonUniform", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "5690c1fbfde59451d104022b5efac082b76443bd2d40bc44b1d02fdc534ebd2f",
+        capabilities: &["GroupNonUniform", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "2843a60f37b48fcaf2b47cc48295486a85b152631cfcd39346a0fb7ca36ce946",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
