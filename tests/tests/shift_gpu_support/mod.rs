@@ -1,6 +1,8 @@
 //! Inputs of stage 3, and meshes on a device.
 #![allow(dead_code, clippy::unwrap_used, reason = "tests; each takes what it needs")]
 
+pub(crate) mod takeout;
+
 use crate::vulkan_support::{self, Gpu};
 use glam::DVec2;
 use polder_dualize::reference;
