@@ -1,6 +1,7 @@
 // Long walks in pieces, 2 of 2: where each later piece begins. Near the point that divides the walker a vertex to the left of
 // it is looked for, and one to the right, and the mesh is walked from the one to the other. On the way is an edge that the
-// walker crosses for certain: its ends lie on different sides of the walker, and the walker's on different sides of it.
+// walker crosses for certain: its ends lie on different sides of the walker, and the walker's on different sides of it. Or a
+// vertex turns up that lies on the walker.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "items.glsl"
@@ -41,7 +42,8 @@ uint seed_near(ivec2 cell, ivec2 aside, uint k, uint which) {
     return inside ? seeds.at[2u * (uint(cell.y) * width + uint(cell.x)) + which] : NONE;
 }
 
-// An edge that is crossed by the line from a to b, by its half-edge that begins to the right; or NONE.
+// An edge that is crossed by the line from a to b, by its half-edge that begins to the right, or a vertex between a and b; or
+// NONE.
 uint crossed_near(ivec2 cell, ivec2 aside, Point a, Point b) {
     uint candidate = 0u;
     uint edges = 0u;
@@ -62,13 +64,8 @@ uint crossed_near(ivec2 cell, ivec2 aside, Point a, Point b) {
             if (event == LOST || edges > MOST_EDGES) {
                 return NONE;
             }
-            if (event == AT_APEX) {
-                walks = apex(triangles, walker.h) != right;
-                turn_again(walker, twin(links, next_edge(walker.h)));
-                continue;
-            }
-            first = origin(triangles, walker.h);
-            second = destination(triangles, walker.h);
+            first = event == AT_APEX ? apex(triangles, walker.h) : origin(triangles, walker.h);
+            second = event == AT_APEX ? first : destination(triangles, walker.h);
         } else {
             if (left != NONE && right != NONE) {
                 // These two have led to nothing.
@@ -88,24 +85,28 @@ uint crossed_near(ivec2 cell, ivec2 aside, Point a, Point b) {
         // One vertex against the line; or two that are joined by an edge, and the ends of the line against that.
         Point p = point_at(positions, first);
         Point q = point_at(positions, second);
+        bool joined = first != second;
         bool apart = true;
         int side_of_first = 0;
         int side_before = 0;
-        for (uint k = 0u; k < (walks ? 4u : 1u) && apart; k++) {
+        for (uint k = 0u; k < (joined ? 4u : 1u) && apart; k++) {
             bool against_line = k < 2u;
             Point tested = k == 0u ? p : k == 1u ? q : k == 2u ? a : b;
             int side = orient2d(against_line ? a : p, against_line ? b : q, tested);
+            if (side == 0 && against_line && lies_ahead(a, tested, a, b) && lies_ahead(tested, b, a, b)) {
+                return AT_VERTEX | (k == 0u ? first : second);
+            }
             apart = side != 0 && ((k & 1u) == 0u || side == -side_before);
             side_of_first = k == 0u ? side : side_of_first;
             side_before = side;
         }
-        if (walks && apart) {
+        if (joined && apart) {
             return side_of_first < 0 ? walker.h : twin(links, walker.h);
         }
         if (walks) {
-            if (event == ALONG) {
+            if (event != LEAVES) {
                 walks = second != right;
-                turn_again(walker, twin(links, walker.h));
+                turn_again(walker, twin(links, event == ALONG ? walker.h : next_edge(walker.h)));
             }
         } else {
             left = side_of_first > 0 && left == NONE ? first : left;

@@ -16,6 +16,7 @@
 BUFFER(U32x4, uvec4, 16, );
 BUFFER(ReadU32x2, uvec2, 8, readonly);
 
+const uint AT_VERTEX = 0x80000000u;
 const uint NO_PIECE = 0xffffffffu;
 
 uint piece_number(uvec4 piece) {

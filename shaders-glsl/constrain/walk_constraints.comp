@@ -79,7 +79,7 @@ void main() {
     uint to = reversed ? both.x : both.y;
 
     uint h = beginning;
-    bool crosses = later;
+    bool crosses = later && (beginning & AT_VERTEX) == 0u;
     bool done = false;
     if (!fresh) {
         h = state.at[item];
@@ -88,6 +88,12 @@ void main() {
         number = later ? piece_met.at[item - constraints] : number;
     } else if (later) {
         done = h == NONE || h == until;
+        if (!done && !crosses) {
+            uint vertex = h & HALF_EDGE;
+            meet(item, number, vertex);
+            number++;
+            h = spokes.at[vertex];
+        }
     } else {
         h = spokes.at[from];
     }
@@ -107,7 +113,7 @@ void main() {
             } else if (event == ALONG || event == AT_APEX) {
                 uint vertex = event == ALONG ? destination(triangles, walker.h) : apex(triangles, walker.h);
                 at_end = vertex == to;
-                done = at_end;
+                done = at_end || until == (AT_VERTEX | vertex);
                 if (!done) {
                     meet(item, number, vertex);
                     number++;

@@ -46,6 +46,7 @@ fn input(case: &str) -> Option<Pslg> {
         "through" => generate::through_vertices(constraints, 1),
         "diameters" => diameters(constraints),
         "rows" => rows(points, constraints),
+        "strip" => strip(points),
         _ => return None,
     })
 }
@@ -67,6 +68,13 @@ fn rows(points: usize, constraints: usize) -> Pslg {
     let at = |y: usize, x: usize| (y % side * side + x) as u32;
     let constraints = (0..constraints).map(|y| [at(y, 0), at(y, side - 1)]).collect();
     Pslg::new(generate::lattice(side, side).points().to_vec(), constraints).unwrap_or_default()
+}
+
+/// One constraint through all triangles of a strip.
+fn strip(points: usize) -> Pslg {
+    let points = generate::lattice(points / 2, 2).points().to_vec();
+    let last = (points.len() as u32).saturating_sub(1);
+    Pslg::new(points, vec![[0, last]]).unwrap_or_default()
 }
 
 /// What stages 1 to 4 leave.

@@ -8,7 +8,7 @@ mod vulkan_support;
 use constrain_support::Start;
 use polder_constrain::kernels::*;
 use polder_constrain::reference;
-use polder_constrain::reference::kernels::{self as expected, Piece};
+use polder_constrain::reference::kernels::{self as expected, Beginning, Piece};
 use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_mesh::{DELETED, NONE};
 use polder_predicates::Sign;
@@ -198,8 +198,8 @@ struct Walked {
     met: Vec<Vec<u32>>,
 }
 
-/// The half-edges that a walk crosses.
-fn crossed(start: &Start, [from, to]: [u32; 2]) -> Vec<u32> {
+/// Where pieces of a walk may begin.
+fn beginnings(start: &Start, [from, to]: [u32; 2]) -> Vec<Beginning> {
     let at = |v: u32| start.positions[v as usize];
     let side = |v: u32| polder_predicates::orient2d(at(from), at(to), at(v));
     let mesh = &start.mesh;
@@ -211,7 +211,10 @@ fn crossed(start: &Start, [from, to]: [u32; 2]) -> Vec<u32> {
             && polder_predicates::orient2d(at(a), at(b), at(from)) == Sign::Positive
             && polder_predicates::orient2d(at(a), at(b), at(to)) == Sign::Negative
     };
-    (0..3 * mesh.slots() as u32).filter(|&h| crosses(h)).collect()
+    let edges = (0..3 * mesh.slots() as u32).filter(|&h| crosses(h)).map(Beginning::Crossing);
+    let chains = reference::walk(mesh, &start.positions, &[[from, to]]).unwrap().chains;
+    let between = &chains.get(0)[1..chains.get(0).len() - 1];
+    edges.chain(between.iter().map(|&v| Beginning::AtVertex(v))).collect()
 }
 
 fn walked(start: &Start, seed: u64) -> Walked {
@@ -221,7 +224,7 @@ fn walked(start: &Start, seed: u64) -> Walked {
     let mut pieces = Vec::new();
     for &c in edges.walkers.iter().take(40) {
         let [a, b] = ends[c as usize];
-        let on_way = crossed(start, if edges.reversed[c as usize] { [b, a] } else { [a, b] });
+        let on_way = beginnings(start, if edges.reversed[c as usize] { [b, a] } else { [a, b] });
         let picks = vulkan_support::words(seed + u64::from(c), (c % 5) as usize);
         for (i, &pick) in picks.iter().enumerate() {
             let beginning = on_way.get(pick as usize % (on_way.len() + 1)).copied();

@@ -239,7 +239,8 @@ impl Shader for DepartWalks {
 
 /// Long walks in pieces, 2 of 2: where each later piece begins. Near the point that divides the walker a vertex to the left of
 /// it is looked for, and one to the right, and the mesh is walked from the one to the other. On the way is an edge that the
-/// walker crosses for certain: its ends lie on different sides of the walker, and the walker's on different sides of it.
+/// walker crosses for certain: its ends lie on different sides of the walker, and the walker's on different sides of it. Or a
+/// vertex turns up that lies on the walker.
 #[derive(Debug, Clone, Copy)]
 pub enum FindBeginnings {}
 
@@ -303,7 +304,7 @@ impl Shader for FindBeginnings {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "c0ae398fc9cf2321a5b91cde332a3d66bfd0b1cb1e70682e006d103b62ad4635",
+        source_hash: "eb86183125e4efcb94cd6f484a4aaf9660374c006dd4ad53e6a2e9c3b44691fe",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -378,7 +379,7 @@ impl Shader for FindEdges {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "159f721e90502dba532ce25f7c359a2ffba7d47bc4195e62d2fafda34e1e967e",
+        source_hash: "477dcabed8b92e60a4b59d661c5cd36313241d07e484cd5e318bb049394da43b",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -568,7 +569,7 @@ impl Shader for ListSubConstraints {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "5c0e911a6c5e50b728e9a4b1850ebf5d20f59b9d52cba12beee13f751ed13396",
+        source_hash: "0d900b575411547f62578629f74b099543c7c85ef43072fc5a5f54404bce04d9",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -907,7 +908,7 @@ impl Shader for PlaceChains {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "dc4a1eee0a1b84642662189b88c64323b8a91999a6a7d3519cebacfbd91a3e46",
+        source_hash: "b865b6435388f3001049849c2c49d190229d0cef58e46c6f3e4def449b8a9e34",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -980,7 +981,7 @@ impl Shader for PlanPieces {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "a8e8a875436aa8044e01501cb246b0e702022a69b8180a059b4cc7a3057e8643",
+        source_hash: "8e769d36bfd304d66353fe78c719fcdd827ad30a6729d52d1fb6c447ce4a13d8",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1098,7 +1099,7 @@ impl Shader for TrimPieces {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "e01dac5f7693754be4a8d4441e6a71fe187e5b5428d61dec6c06c23e380e0249",
+        source_hash: "10f7170961ccb31f3302c8efffd2468fa6cff9334094eb91e03ccacb08d0d200",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1183,7 +1184,7 @@ impl Shader for WalkConstraints {
             Constant { name: "ARITHMETIC", id: 1, default: 0 },
         ],
         capabilities: &["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "e6b385c1fddf931a14358c27b6264c0ac7b28da3f90ce74d1867ee1f01175187",
+        source_hash: "a3d1fe19f0b7f3408d3ec27e980933f37ef697d4104d8c1da454313a4fa81138",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
@@ -1240,7 +1241,7 @@ impl Shader for WalkTurn {
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
         capabilities: &["PhysicalStorageBufferAddresses", "Shader"],
-        source_hash: "7d4cb1116801b4244a5ac3f655090806b1275542b715d2be51b54b1a136b528b",
+        source_hash: "4bfbcb082b66c200fcbf596a2cc860c6f665a703ea20e2066c57ca531d39a1e1",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 

@@ -5,7 +5,7 @@
 //!    be expected to cross. The later ones of all walkers stand in a list, those of one walker together.
 //! 3. *Beginnings.* Where a piece is to begin, a vertex to the left of the walker and one to the right are taken from cells
 //!    nearby. A walk from the one to the other comes over an edge that the walker crosses; exact signs say that it does.
-//!    Where none is found the piece has no beginning, and the one before goes on.
+//!    A vertex on the walker serves as well. Where nothing is found the piece has no beginning, and the one before goes on.
 //!
 //! A piece ends where the next one begins that has a beginning, or else at the end of the walker. Nobody knows whether
 //! beginnings stand in order along the walker. If they do not, a piece comes to the end though there are later ones; then the

@@ -3,7 +3,7 @@
 //! *Items* are the constraints, and behind them the later [pieces](Piece) of long ones.
 
 use crate::gpu::pieces::Grid;
-use crate::reference::fan::{Departure, depart_by_turning, enter, leave};
+use crate::reference::fan::{Departure, ahead, depart_by_turning, enter, leave};
 use glam::DVec2;
 use polder_flip::priority;
 use polder_mesh::{GhostMesh, NONE};
@@ -66,6 +66,25 @@ pub fn find_edges(mesh: &GhostMesh, ends: &[[u32; 2]], spokes: &[u32], degrees: 
     edges
 }
 
+/// Where a piece begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Beginning {
+    /// It is about to cross this half-edge.
+    Crossing(u32),
+    /// At this vertex on the walker, which belongs to what the piece meets.
+    AtVertex(u32),
+}
+
+impl Beginning {
+    /// As the device has it.
+    pub fn word(self) -> u32 {
+        match self {
+            Self::Crossing(h) => h,
+            Self::AtVertex(v) => 1 << 31 | v,
+        }
+    }
+}
+
 /// A later piece of a long walk; those of one walker stand together in order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Piece {
@@ -75,8 +94,8 @@ pub struct Piece {
     pub number: u32,
     /// How many pieces the walker has, number 0 included.
     pub count: u32,
-    /// The half-edge that it begins by crossing, if one was found.
-    pub beginning: Option<u32>,
+    /// Where it begins, if something was found.
+    pub beginning: Option<Beginning>,
     /// In the first one of a walker: the least number of a piece that came to the walker's end.
     pub last: u32,
 }
@@ -84,7 +103,7 @@ pub struct Piece {
 impl Piece {
     /// As the device has it.
     pub fn words(&self) -> [u32; 4] {
-        [self.walker, self.number << 16 | self.count, self.beginning.unwrap_or(NONE), self.last]
+        [self.walker, self.number << 16 | self.count, self.beginning.map_or(NONE, Beginning::word), self.last]
     }
 
     /// Where the first later piece of the same walker stands, if this one stands at `p`.
@@ -121,13 +140,18 @@ pub fn walk_constraints(
             _ => 0..0,
         };
         let until = pieces[rest].iter().find_map(|piece| piece.beginning);
-        let begin = match piece.map(|p| pieces[p].beginning) {
+        let item = piece.map_or(c as usize, |p| ends.len() + p);
+        let start = match piece.map(|p| pieces[p].beginning) {
             None => depart_by_turning(mesh, positions, spokes[from as usize], to),
-            Some(Some(h)) => Some(Departure::Across(h)),
+            Some(start) if start == until => continue,
+            Some(Some(Beginning::AtVertex(v))) => {
+                met[item].push(v);
+                depart_by_turning(mesh, positions, spokes[v as usize], to)
+            }
+            Some(Some(Beginning::Crossing(h))) => Some(Departure::Across(h)),
             Some(None) => continue,
         };
-        let item = piece.map_or(c as usize, |p| ends.len() + p);
-        let at_end = walk_on(mesh, positions, [from, to], begin, until, spokes, &mut met[item]);
+        let at_end = walk_on(mesh, positions, [from, to], start, until, spokes, &mut met[item]);
         if let (true, Some(run)) = (at_end, run) {
             pieces[run].last = pieces[run].last.min(piece.map_or(0, |p| pieces[p].number));
         }
@@ -135,23 +159,23 @@ pub fn walk_constraints(
     met
 }
 
-/// Whether the walk came to its end, not to the half-edge `until`.
+/// Whether the walk came to its end, not to `until`.
 fn walk_on(
     mesh: &GhostMesh,
     positions: &[DVec2],
     [from, to]: [u32; 2],
-    begin: Option<Departure>,
-    until: Option<u32>,
+    start: Option<Departure>,
+    until: Option<Beginning>,
     spokes: &[u32],
     met: &mut Vec<u32>,
 ) -> bool {
     let line = [from, to].map(|v| positions[v as usize]);
-    let mut departure = begin;
+    let mut departure = start;
     loop {
         let vertex = match departure.expect("the mesh is a triangulation of a convex hull") {
             Departure::Along(h) => mesh.destination(h),
             Departure::Across(mut h) => loop {
-                if Some(h) == until {
+                if until == Some(Beginning::Crossing(h)) {
                     return false;
                 }
                 let (g, side) = enter(mesh, positions, h, line).expect("the mesh is a triangulation of a convex hull");
@@ -161,8 +185,8 @@ fn walk_on(
                 h = leave(g, side);
             },
         };
-        if vertex == to {
-            return true;
+        if vertex == to || until == Some(Beginning::AtVertex(vertex)) {
+            return vertex == to;
         }
         met.push(vertex);
         departure = depart_by_turning(mesh, positions, spokes[vertex as usize], to);
@@ -242,8 +266,8 @@ pub fn plan_pieces(positions: &[DVec2], ends: &[[u32; 2]], list: &[u32], grid: &
     list.iter().map(|&walker| grid.pieces(ends[walker as usize].map(|v| positions[v as usize]))).collect()
 }
 
-/// The half-edges by which a walk from one vertex to another leaves triangles, from right to left.
-fn crossed_between(mesh: &GhostMesh, positions: &[DVec2], spokes: &[u32], [from, to]: [u32; 2]) -> Vec<u32> {
+/// What a walk from one vertex to another comes over: half-edges by which it leaves triangles, and vertices.
+fn crossed_between(mesh: &GhostMesh, positions: &[DVec2], spokes: &[u32], [from, to]: [u32; 2]) -> Vec<Beginning> {
     let line = [from, to].map(|v| positions[v as usize]);
     let mut crossed = Vec::new();
     let mut v = from;
@@ -251,13 +275,14 @@ fn crossed_between(mesh: &GhostMesh, positions: &[DVec2], spokes: &[u32], [from,
         v = match depart_by_turning(mesh, positions, spokes[v as usize], to) {
             None => return crossed,
             Some(Departure::Along(h)) => {
-                crossed.push(h);
+                crossed.push(Beginning::Crossing(h));
                 mesh.destination(h)
             }
             Some(Departure::Across(mut h)) => loop {
-                crossed.push(h);
+                crossed.push(Beginning::Crossing(h));
                 let Some((g, side)) = enter(mesh, positions, h, line) else { return crossed };
                 if side == Sign::Zero {
+                    crossed.push(Beginning::AtVertex(mesh.apex(g)));
                     break mesh.apex(g);
                 }
                 h = leave(g, side);
@@ -267,22 +292,26 @@ fn crossed_between(mesh: &GhostMesh, positions: &[DVec2], spokes: &[u32], [from,
     crossed
 }
 
-/// An edge that is crossed by the line between two vertices, by its half-edge that begins to the right of it: the first on
-/// the way from a vertex to the left to one to the right. Of the candidates, the first of either kind are tried, then the
-/// first among the rest, and so on.
+/// Where the line between two vertices is, near some others: the first edge that it crosses, by the half-edge that begins to
+/// the right, or vertex that it runs through, on the way from a vertex to the left to one to the right. Of the candidates, the
+/// first of either kind are tried, then the first among the rest, and so on.
 pub fn find_beginnings(
     mesh: &GhostMesh,
     positions: &[DVec2],
     spokes: &[u32],
     line: [u32; 2],
     candidates: &[u32],
-) -> Option<u32> {
+) -> Option<Beginning> {
     let at = |v: u32| positions[v as usize];
     let [a, b] = line.map(at);
     let side = |v: u32| orient2d(a, b, at(v));
+    let between = |v: u32| side(v) == Sign::Zero && !line.contains(&v) && ahead(a, at(v), b) && ahead(b, at(v), a);
     let apart = |p: Sign, q: Sign| p != Sign::Zero && p as i8 == -(q as i8);
     let [mut left, mut right] = [None; 2];
     for &v in candidates {
+        if between(v) {
+            return Some(Beginning::AtVertex(v));
+        }
         match side(v) {
             Sign::Positive => left = left.or(Some(v)),
             Sign::Negative => right = right.or(Some(v)),
@@ -290,11 +319,19 @@ pub fn find_beginnings(
         }
         let (Some(first), Some(second)) = (left, right) else { continue };
         [left, right] = [None; 2];
-        for h in crossed_between(mesh, positions, spokes, [first, second]) {
-            let (u, v) = (mesh.origin(h), mesh.destination(h));
+        for found in crossed_between(mesh, positions, spokes, [first, second]) {
+            let on_way = match found {
+                Beginning::Crossing(h) => [mesh.origin(h), mesh.destination(h)],
+                Beginning::AtVertex(v) => [v, v],
+            };
+            // The second is looked at only if the first lies to one side.
+            let [u, v] = on_way;
+            if let Some(v) = [u, v].into_iter().take_while(|&w| w == u || side(u) != Sign::Zero).find(|&v| between(v)) {
+                return Some(Beginning::AtVertex(v));
+            }
             let across = |p: DVec2| orient2d(at(u), at(v), p);
-            if apart(side(u), side(v)) && apart(across(a), across(b)) {
-                return Some(if side(u) == Sign::Negative { h } else { mesh.twin(h) });
+            if let (Beginning::Crossing(h), true) = (found, apart(side(u), side(v)) && apart(across(a), across(b))) {
+                return Some(Beginning::Crossing(if side(u) == Sign::Negative { h } else { mesh.twin(h) }));
             }
         }
     }
