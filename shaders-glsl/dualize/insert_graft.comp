@@ -5,8 +5,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "insert.glsl"
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_ballot : require
+#include "workgroup_scan.glsl"
 
 layout(push_constant, std430) uniform Args {
     U32 triangles;
@@ -19,6 +18,8 @@ layout(push_constant, std430) uniform Args {
     U32 words;
     uint limit;
 };
+
+shared uint base_of_group;
 
 void put(uint t, uvec3 corner) {
     triangles.at[3u * t] = corner.x;
@@ -69,23 +70,23 @@ void main() {
         }
         lost = !won;
     }
-    uint losers = subgroupAdd(uint(lost));
-    uint before = subgroupExclusiveAdd(uint(lost));
-    uint winners = subgroupAdd(uint(won));
-    uint base = 0u;
-    if (subgroupElect()) {
-        if (losers > 0u) {
-            base = atomicAdd(words.at[NEXT], losers);
-        }
+    // Losers in the lower half of a word, winners in the upper one. Adding is up to one invocation of the workgroup: where
+    // nearly all points lose, all of them add to the same word.
+    uint total;
+    uint before = sum_before(uint(lost) | uint(won) << 16, total) & 0xffffu;
+    if (gl_LocalInvocationIndex == 0u) {
+        uint losers = total & 0xffffu;
+        uint winners = total >> 16;
+        base_of_group = losers > 0u ? atomicAdd(words.at[NEXT], losers) : 0u;
         if (winners > 0u) {
             atomicAdd(words.at[INSERTED], winners);
         }
     }
-    base = subgroupBroadcastFirst(base);
+    barrier();
     if (lost) {
         // The slot still has a triangle next to the point, with the new vertex, which has few neighbors, at corner 2.
         uint from = (place & ON_EDGE) == 0u ? h + 1u : h;
-        waiting.at[limit - list + base + before] = uvec2(point, from);
+        waiting.at[limit - list + base_of_group + before] = uvec2(point, from);
     }
     if (!won) {
         return;

@@ -482,14 +482,8 @@ impl Shader for InsertGraft {
         ],
         workgroup: [Side::Constant(0), Side::Fixed(1), Side::Fixed(1)],
         constants: &[Constant { name: "WORKGROUP", id: 0, default: 256 }],
-        capabilities: &[
-            "GroupNonUniform",
-            "GroupNonUniformArithmetic",
-            "GroupNonUniformBallot",
-            "PhysicalStorageBufferAddresses",
-            "Shader",
-        ],
-        source_hash: "3537bb27a57a026a826faf08e8a6078e2de194e16a0ee46eb577c4b7b8c173b1",
+        capabilities: &["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"],
+        source_hash: "872f1a3a4265f8cea3da35908bbcd44c1e56f46ad6645f2e748d5cad8e4d0a1a",
         compiler: "libshaderc 2023.2-1, SPIR-V 1.6 revision 1",
     };
 
