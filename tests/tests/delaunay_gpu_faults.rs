@@ -36,26 +36,36 @@ fn fail(pslg: &Pslg) -> Triangulation {
     work(&device).unwrap()
 }
 
-#[test]
-fn every_failure_is_an_error_and_the_next_call_works() {
-    let pslg = generate::clusters(300, 3, 1e-4, 5);
-    let pslg = Pslg::new(pslg.points().to_vec(), Vec::new()).unwrap();
-    let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
-    assert!(fail(&pslg) == expected);
+fn fails_well(pslg: &Pslg) {
+    let expected = triangulate(pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
+    assert!(fail(pslg) == expected);
 }
 
 #[test]
-fn every_failure_on_a_line_too() {
-    let pslg = generate::collinear(100, 5);
-    let pslg = Pslg::new(pslg.points().to_vec(), Vec::new()).unwrap();
-    let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
-    assert!(fail(&pslg) == expected);
+fn every_failure_is_an_error_and_the_next_call_works() {
+    fails_well(&generate::clusters(300, 3, 1e-4, 5));
+}
+
+#[test]
+fn every_failure_with_constraints() {
+    fails_well(&generate::segments(300, 60, 5));
+}
+
+#[test]
+fn every_failure_on_a_line() {
+    fails_well(&generate::collinear(100, 5));
+}
+
+#[test]
+fn every_failure_on_a_line_with_constraints() {
+    let points = generate::collinear(100, 5).points().to_vec();
+    fails_well(&Pslg::new(points, (0..30).map(|i| [3 * i, i]).collect()).unwrap());
 }
 
 /// What a wait has given up on may still be at work on the memory that the next call uses.
 #[test]
 fn a_gpu_that_timed_out_is_good_for_the_next_call() {
-    let pslgs = [generate::uniform(300, 6), generate::collinear(100, 6)];
+    let pslgs = [generate::uniform(300, 6), generate::collinear(100, 6), generate::segments(300, 60, 6)];
     let mut gpu = Gpu::on(&Device::open(&vulkan_support::options()).unwrap()).unwrap();
     for pslg in &pslgs {
         let expected = triangulate(pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;

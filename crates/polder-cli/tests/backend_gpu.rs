@@ -30,13 +30,35 @@ fn the_device_gives_the_digest_of_the_cpu_and_says_what_it_did() {
     assert!(!report["stages"].as_array().unwrap().iter().any(on_cpu));
     assert_eq!(text(polder(dir, "verify in.node out.ele --canonical")), "out.ele: valid and canonical\n");
 
-    // Few points are not worth a device, and segments cannot be inserted there.
+    // Few points are not worth a device.
     let report = text(polder(dir, "triangulate in.node -o out.ele --report json"));
     let report: Value = serde_json::from_str(&report).unwrap();
     assert_eq!(report["backend"], "cpu");
     assert!(report["why"].as_str().unwrap().contains("2000 points"));
+}
+
+#[test]
+fn constraints_too_and_crossings_are_named_or_split() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
     text(polder(dir, "generate segments 500 --segments 50 -o segments.poly"));
-    let refused = polder(dir, "triangulate segments.poly -o out.ele --backend vulkan");
-    assert_eq!(refused.status.code(), Some(3));
-    assert!(String::from_utf8_lossy(&refused.stderr).contains("constraints"));
+    let digest = text(polder(dir, "digest segments.poly --backend cpu"));
+    let report = text(polder(dir, "triangulate segments.poly -o out.ele --backend vulkan --report json"));
+    let report: Value = serde_json::from_str(&report).unwrap();
+    assert_eq!(report["constraints"]["total"], 50);
+    let names: Vec<&str> = report["stages"].as_array().unwrap().iter().map(|s| s["name"].as_str().unwrap()).collect();
+    assert!(names.contains(&"walk") && names.contains(&"constrain"), "{names:?}");
+    assert_eq!(text(polder(dir, "digest segments.poly --backend vulkan")), digest);
+    assert_eq!(text(polder(dir, "verify segments.poly out.ele --canonical")), "out.ele: valid and canonical\n");
+
+    std::fs::write(dir.join("x.poly"), "4 2 0 0\n0 0 0\n1 4 0\n2 4 3\n3 0 3\n2 0\n0 0 2\n1 3 1\n0\n").unwrap();
+    let by = |backend: &str| polder(dir, &format!("triangulate x.poly -o x.ele --backend {backend}"));
+    let (cpu, vulkan) = (by("cpu"), by("vulkan"));
+    assert_ne!(vulkan.status.code(), Some(0));
+    assert_eq!((vulkan.status.code(), &vulkan.stderr), (cpu.status.code(), &cpu.stderr));
+    let split = |backend: &str| {
+        text(polder(dir, &format!("triangulate x.poly -o {backend}.ele --crossings split --backend {backend}")));
+        std::fs::read(dir.join(format!("{backend}.ele"))).unwrap()
+    };
+    assert_eq!(split("vulkan"), split("cpu"));
 }

@@ -34,6 +34,11 @@ impl Chains {
         fit.then_some(Self { offsets, vertices })
     }
 
+    /// Its [`offsets`](Self::offsets) and [`vertices`](Self::vertices).
+    pub fn into_parts(self) -> (Vec<u32>, Vec<u32>) {
+        (self.offsets, self.vertices)
+    }
+
     /// Where the chain of each constraint begins among the [`vertices`](Self::vertices), and where the last one ends.
     pub fn offsets(&self) -> &[u32] {
         &self.offsets

@@ -11,8 +11,26 @@ const MAX_THREADS: usize = 1024;
 
 /// Triangulates on the CPU, in a pool of threads of its own where the caller asks for a number of them.
 pub(crate) fn triangulate(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
+    in_pool(options, || run(pslg, options))
+}
+
+/// The error that names the constraints that cross; for backends that have met one.
+pub(crate) fn crossings(pslg: &Pslg, options: &Options) -> Result<Error, Error> {
+    if options.max_crossings == 0 {
+        return Ok(Error::CrossingConstraints { pairs: Vec::new(), truncated: true });
+    }
+    match in_pool(options, || named_crossings(pslg, options))? {
+        Error::CrossingConstraints { pairs, truncated: false } if pairs.is_empty() => {
+            let what = "a constraint was stopped, but none cross".to_owned();
+            Err(Error::Internal { stage: "constrain", what })
+        }
+        named => Ok(named),
+    }
+}
+
+fn in_pool<T: Send>(options: &Options, work: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
     if options.threads == 0 {
-        return run(pslg, options);
+        return work();
     }
     if options.threads > MAX_THREADS {
         let what = format!("{} threads: at most {MAX_THREADS} are possible", options.threads);
@@ -20,7 +38,7 @@ pub(crate) fn triangulate(pslg: &Pslg, options: &Options) -> Result<Output, Erro
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build();
     let pool = pool.map_err(|e| Error::Unsupported { what: format!("{} threads: {e}", options.threads) })?;
-    pool.install(|| run(pslg, options))
+    pool.install(work)
 }
 
 fn run(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
@@ -32,7 +50,7 @@ fn run(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     let (chains, counts) = match delaunay.constrain(pslg.constraints(), monitor) {
         Err(CpuError::Crossing { .. }) => {
             drop(delaunay);
-            return Err(crossings(pslg, options)?);
+            return Err(named_crossings(pslg, options)?);
         }
         other => other.map_err(typed)?,
     };
@@ -50,7 +68,7 @@ fn run(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
 
 /// Names all crossings: those that an insertion meets are not all there are, since two constraints that a third one
 /// stops never meet. So the constraints walk the mesh of the points alone.
-fn crossings(pslg: &Pslg, options: &Options) -> Result<Error, Error> {
+fn named_crossings(pslg: &Pslg, options: &Options) -> Result<Error, Error> {
     use polder_constrain::reference::{crossings, walk};
 
     let delaunay = Delaunay::new(pslg.points(), options.monitor()).map_err(typed)?;

@@ -28,7 +28,8 @@
 //!
 //! # Ways
 //!
-//! [`Backend::Cpu`] is the fast way on a CPU; [`Backend::Reference`] runs the stages of the GPU pipeline as plain Rust,
+//! [`Backend::Cpu`] is the fast way on a CPU; [`Backend::Vulkan`] is the whole pipeline on a GPU, which [`Gpu`] keeps open for
+//! more than one call; [`Backend::Reference`] runs the stages of the GPU pipeline as plain Rust,
 //! and [`stages()`] shows all that they pass on to each other. [`verify`] checks any mesh, exactly.
 #![forbid(unsafe_code)]
 
@@ -44,7 +45,7 @@ mod stages;
 pub mod verify;
 
 pub use error::Error;
-pub use gpu::{AUTO_FROM, Gpu, OnDevice};
+pub use gpu::{AUTO_FROM, ChainsOnDevice, Gpu, OnDevice};
 pub use options::{Backend, CrossingPolicy, Options, ProgressFn};
 pub use polder_mesh::{
     AddedVertex, Chains, ConstraintId, DVec2, Digest, Edge, EdgeId, MeshError, Progress, Pslg, TriangleId,
@@ -75,18 +76,10 @@ pub use {
 /// - [`Error::Cancelled`] if the caller said so.
 /// - [`Error::BoundExceeded`] and [`Error::Internal`] are defects of polder, reported instead of a hang or a wrong answer.
 pub fn triangulate(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
-    match options.crossings {
-        CrossingPolicy::Error => on_backend(pslg, options),
-        CrossingPolicy::Split => split::triangulate(pslg, options),
-    }
-}
-
-/// Constraints that cross are an error here.
-fn on_backend(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     match options.backend {
         Backend::Auto => gpu::auto(pslg, options),
-        Backend::Cpu => cpu::triangulate(pslg, options),
-        Backend::Reference => reference::triangulate(pslg, options),
+        Backend::Cpu => split::by_policy(pslg, options, Place::Cpu, cpu::triangulate),
+        Backend::Reference => split::by_policy(pslg, options, Place::Cpu, reference::triangulate),
         Backend::Vulkan => gpu::vulkan(pslg, options),
     }
 }

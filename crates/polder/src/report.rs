@@ -1,4 +1,5 @@
-use polder_mesh::{Pslg, Triangulation};
+use polder_mesh::{Chains, Pslg, Triangulation};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -179,7 +180,7 @@ impl Report {
         let total = pslg.points().len();
         Self {
             points: PointReport { total, vertices: total - duplicates, duplicates, added: 0 },
-            constraints: constraints(pslg, triangulation),
+            constraints: constraints(triangulation),
             triangles: triangulation.triangles().len(),
             seconds: watch.start.elapsed().as_secs_f64(),
             stages: watch.stages,
@@ -195,7 +196,7 @@ impl Report {
         let vertices = self.points.vertices;
         Self {
             points: PointReport { total, vertices, duplicates: total + added - vertices, added },
-            constraints: constraints(input, triangulation),
+            constraints: constraints(triangulation),
             seconds: watch.start.elapsed().as_secs_f64(),
             stages: [watch.stages, self.stages].concat(),
             ..self
@@ -203,30 +204,31 @@ impl Report {
     }
 }
 
-fn constraints(pslg: &Pslg, triangulation: &Triangulation) -> ConstraintReport {
-    let of = triangulation.representatives();
-    let mut ends: Vec<([u32; 2], u32)> = Vec::with_capacity(pslg.constraints().len());
-    let mut zero_length = Vec::new();
-    for (i, &[a, b]) in pslg.constraints().iter().enumerate() {
-        let (a, b) = (of[a as usize], of[b as usize]);
-        if a == b {
-            zero_length.push(i as u32);
-        } else {
-            ends.push(([a.min(b), a.max(b)], i as u32));
-        }
-    }
-    ends.sort_unstable();
-    let mut repeated: Vec<u32> = ends.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
-    repeated.sort_unstable();
-    ConstraintReport {
-        total: pslg.constraints().len(),
-        zero_length,
-        repeated,
-        through_vertices: triangulation.chains().iter().filter(|chain| chain.len() > 2).count(),
-        constrained_edges: constrained_edges(triangulation),
-    }
+fn constraints(triangulation: &Triangulation) -> ConstraintReport {
+    let chains = triangulation.chains();
+    let mut report = ConstraintReport {
+        total: chains.len(),
+        through_vertices: chains.iter().filter(|chain| chain.len() > 2).count(),
+        constrained_edges: triangulation.edges().filter(|edge| edge.constrained).count(),
+        ..ConstraintReport::default()
+    };
+    report.name_needless(chains);
+    report
 }
 
-fn constrained_edges(triangulation: &Triangulation) -> usize {
-    triangulation.edges().filter(|edge| edge.constrained).count()
+impl ConstraintReport {
+    /// Names the constraints that have no length, and those that repeat others: their chains say so.
+    pub(crate) fn name_needless(&mut self, chains: &Chains) {
+        self.zero_length.clear();
+        let mut ends: Vec<([u32; 2], u32)> = Vec::with_capacity(chains.len());
+        for (i, chain) in (0..).zip(chains.iter()) {
+            match *chain {
+                [a, .., b] => ends.push(([a.min(b), a.max(b)], i)),
+                _ => self.zero_length.push(i),
+            }
+        }
+        ends.par_sort_unstable();
+        self.repeated = ends.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
+        self.repeated.sort_unstable();
+    }
 }

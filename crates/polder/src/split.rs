@@ -16,7 +16,7 @@
 //! The points depend on the set of edges alone, not on the order or the direction of the constraints, nor on the
 //! backend, which gets points and edges that do not cross.
 
-use crate::report::Stopwatch;
+use crate::report::{Place, Stopwatch};
 use crate::{AddedVertex, ConstraintId, CrossingPolicy, DVec2, Error, Options, Output, Pslg, Triangulation};
 use polder_constrain::reference::{crossings, intersection, walk};
 use polder_cpu::Delaunay;
@@ -39,19 +39,28 @@ struct Split {
     rounds: u32,
 }
 
-/// Triangulates, and cuts constraints first if they cross.
-pub(crate) fn triangulate(input: &Pslg, options: &Options) -> Result<Output, Error> {
+/// Triangulates with a backend to which constraints that cross are an error; where the policy says so, they are cut first.
+/// `place` is where the backend works, and meets the first crossing.
+pub(crate) fn by_policy(
+    input: &Pslg,
+    options: &Options,
+    place: Place,
+    mut backend: impl FnMut(&Pslg, &Options) -> Result<Output, Error>,
+) -> Result<Output, Error> {
+    if options.crossings == CrossingPolicy::Error {
+        return backend(input, options);
+    }
     let refusing = Options { crossings: CrossingPolicy::Error, max_crossings: 0, ..options.clone() };
     let mut watch = Stopwatch::start();
-    match crate::on_backend(input, &refusing) {
+    match backend(input, &refusing) {
         Err(Error::CrossingConstraints { .. }) => {}
         other => return other,
     }
-    watch.stage("crossings_met", []);
+    watch.stage_on(place, "crossings_met", []);
     let split = split(input, options)?;
     let (rounds, added) = (u64::from(split.rounds), split.added.len() as u64);
     watch.stage("split", [("rounds", rounds), ("added_vertices", added)]);
-    let Output { triangulation, report } = crate::on_backend(&split.pslg, &refusing)?;
+    let Output { triangulation, report } = backend(&split.pslg, &refusing)?;
     let triangulation = split.restored(triangulation)?;
     let report = report.of_split(input, &triangulation, watch);
     Ok(Output { triangulation, report })

@@ -1,13 +1,14 @@
 //! Which backend a call takes.
 
 use super::Gpu;
-use crate::{Error, Options, Output, cpu};
+use crate::{Error, Options, Output, Place, cpu, split};
 use polder_mesh::Pslg;
 use polder_vulkan::{Device, DeviceKind, DeviceOptions};
 use std::time::Instant;
 
 /// From so many points on [`Backend::Auto`](crate::Backend::Auto) looks for a GPU, and from half as many where the CPU may
 /// use eight threads or fewer: below, opening it takes longer than the CPU needs for everything.
+/// Constraints are not counted.
 ///
 /// Measured on an NVIDIA H200 and its host, in a process that triangulates uniform points once. With kernels from the cache
 /// on disk, opening takes 175 ms (Vulkan 65, the device 70, the self-test 25, kernels 13), and a million points then 15 ms.
@@ -24,7 +25,6 @@ fn device_options(options: &Options) -> DeviceOptions {
 
 /// On a Vulkan device, or not at all.
 pub(crate) fn vulkan(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
-    refuse_constraints(pslg)?;
     let start = Instant::now();
     let mut gpu = Gpu::open(&device_options(options))?;
     let opening = start.elapsed().as_secs_f64();
@@ -40,24 +40,20 @@ fn opened(mut output: Output, seconds: f64) -> Output {
     output
 }
 
-pub(super) fn refuse_constraints(pslg: &Pslg) -> Result<(), Error> {
-    if pslg.constraints().is_empty() {
-        return Ok(());
-    }
-    let what = "constraints are not inserted on Vulkan devices yet; use the backend cpu".to_owned();
-    Err(Error::Unsupported { what })
-}
-
-/// On a GPU where that pays and works, else on the CPU; the report says why.
+/// On a GPU where that pays and works, else on the CPU; the report says why. What is wrong with the input is wrong on both.
 pub(crate) fn auto(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     let points = pslg.points().len();
+    let size = match pslg.constraints().len() {
+        0 => format!("{points} points"),
+        constraints => format!("{points} points and {constraints} constraints"),
+    };
     let threads = if options.threads == 0 { rayon::current_num_threads() } else { options.threads };
     let from = if threads > FEW_THREADS { AUTO_FROM } else { AUTO_FROM / 2 };
     if points < from {
-        return on_cpu(pslg, options, format!("{points} points; beside {threads} threads a GPU pays from {from} on"));
+        return on_cpu(pslg, options, format!("{size}; beside {threads} threads a GPU pays from {from} points on"));
     }
     let start = Instant::now();
-    let mut gpu = match refuse_constraints(pslg).and_then(|()| open(options)) {
+    let mut gpu = match open(options) {
         Ok(gpu) => gpu,
         Err(error) => return on_cpu(pslg, options, format!("no GPU: {error}")),
     };
@@ -65,15 +61,20 @@ pub(crate) fn auto(pslg: &Pslg, options: &Options) -> Result<Output, Error> {
     match gpu.triangulate(pslg, options) {
         Ok(output) => {
             let mut output = opened(output, opening);
-            output.report.why = format!("a GPU, and {points} points; beside {threads} threads it pays from {from} on");
+            output.report.why = format!("a GPU, and {size}; beside {threads} threads it pays from {from} points on");
             Ok(output)
         }
-        Err(error @ Error::Cancelled(_)) => Err(error),
-        Err(error) => {
+        Err(error) if is_of_device(&error) => {
             drop(gpu);
             on_cpu(pslg, options, format!("the GPU failed: {error}"))
         }
+        Err(error) => Err(error),
     }
+}
+
+/// Whether the CPU may do better.
+fn is_of_device(error: &Error) -> bool {
+    matches!(error.kind(), "unsupported" | "out_of_memory" | "device_lost" | "bound_exceeded" | "internal")
 }
 
 fn open(options: &Options) -> Result<Gpu, Error> {
@@ -86,7 +87,7 @@ fn open(options: &Options) -> Result<Gpu, Error> {
 }
 
 fn on_cpu(pslg: &Pslg, options: &Options, why: String) -> Result<Output, Error> {
-    let mut output = cpu::triangulate(pslg, options)?;
+    let mut output = split::by_policy(pslg, options, Place::Cpu, cpu::triangulate)?;
     output.report.why = why;
     Ok(output)
 }

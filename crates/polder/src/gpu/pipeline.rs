@@ -1,14 +1,18 @@
 //! The kernels of all stages, and how they follow each other.
 
+use super::constraints::Kernels;
 use super::held::{Held, Reads};
+use super::internal;
+use super::work::Input;
 use crate::Error;
 use polder_canonical::gpu as canonical;
+use polder_constrain::gpu::pieces::Grid;
+use polder_constrain::gpu::walk;
 use polder_dualize::gpu::{dualize, insert, shift, to_insert};
 use polder_flip::gpu::{self as flip, Arithmetic};
-use polder_mesh::DVec2;
-use polder_voronoi::GridMapping;
 use polder_voronoi::gpu as voronoi;
-use polder_vulkan::{Device, Pool, Recording, View};
+use polder_voronoi::{Bounds, GridMapping};
+use polder_vulkan::{Device, Pool, Recording};
 
 #[derive(Debug)]
 pub(super) struct Pipeline {
@@ -23,6 +27,9 @@ pub(super) struct Pipeline {
     pub(super) insert: insert::Stage,
     pub(super) flip: flip::Stage,
     pub(super) canonical: canonical::Stage,
+    arithmetic: Arithmetic,
+    /// Of constraints, if there were any.
+    constraints: Option<Kernels>,
 }
 
 impl Pipeline {
@@ -41,7 +48,21 @@ impl Pipeline {
             insert: insert::Stage::with_arithmetic(device, arithmetic)?,
             flip: flip::Stage::with_arithmetic(device, arithmetic)?,
             canonical: canonical::Stage::new(device, arithmetic)?,
+            arithmetic,
+            constraints: None,
         })
+    }
+
+    /// Makes the kernels that constraints need, if they are not there.
+    pub(super) fn prepare_constraints(&mut self) -> Result<(), Error> {
+        if self.constraints.is_none() {
+            self.constraints = Some(Kernels::new(&self.device, self.arithmetic)?);
+        }
+        Ok(())
+    }
+
+    pub(super) fn constraints(&self) -> Result<&Kernels, Error> {
+        self.constraints.as_ref().ok_or_else(|| internal("no kernels for constraints"))
     }
 
     /// Everything from the mapping to the canonical order. Nothing is looked at on the way: a stage that is given nonsense
@@ -49,11 +70,11 @@ impl Pipeline {
     pub(super) fn record(
         &self,
         recording: &mut Recording,
-        mapping: &GridMapping,
-        points: View<'_, DVec2>,
+        (mapping, bounds): (&GridMapping, &Bounds),
+        given: &Input<'_>,
         held: &Held,
     ) -> Result<Reads, Error> {
-        let Held { mesh, size, .. } = held;
+        let (mesh, size, points) = (&held.mesh, &held.needs.size, given.points);
         recording.section("voronoi");
         let voronoi = self.voronoi.record(recording, mapping, points, &held.voronoi)?;
         let (order, pixels, colors) = (held.voronoi.order(), held.voronoi.pixels(), held.voronoi.colors());
@@ -84,14 +105,26 @@ impl Pipeline {
         };
         let insert = self.insert.record(recording, mesh, (&self.flip, &held.flip), &held.insert, input)?;
 
+        let vertex_of = held.insert.vertex_of();
+        let constraints = match (given.constraints, &held.constraints) {
+            (Some(constraints), Some(held)) => {
+                let names = Some(walk::Names { order, vertex_of });
+                let grid = Some(Grid::over(bounds.low(), bounds.high(), points.len()));
+                let input = walk::Input { constraints, names, grid };
+                Some(self.constraints()?.record(recording, mesh, held, input)?)
+            }
+            _ => None,
+        };
+
         recording.section("flip");
         held.flips.record_clear(recording);
         self.flip.record_flip(recording, mesh, &held.flip, &held.flips)?;
         let flip = held.flips.read(recording);
 
         recording.section("canonical_order");
-        let input = canonical::Input { mesh, vertex_of: held.insert.vertex_of(), order, chains: None };
+        let chains = held.constraints.as_ref().map(|held| held.to_name()).transpose()?;
+        let input = canonical::Input { mesh, vertex_of, order, chains };
         let canonical = self.canonical.record(recording, &input, &held.canonical)?;
-        Ok(Reads { voronoi, dualize, shift, hull, insert, flip, canonical })
+        Ok(Reads { voronoi, dualize, shift, hull, insert, constraints, flip, canonical })
     }
 }

@@ -1,9 +1,10 @@
 //! A triangulation that lies on the device.
 
 use super::held::{Found, Held};
+use super::internal;
 use crate::report::Place;
 use crate::{Error, Report, StageReport};
-use polder_mesh::{Arrays, Chains, Parts, Triangulation};
+use polder_mesh::{Arrays, Chains, Parts, Pslg, Triangulation};
 use polder_vulkan::{Downloads, Engine, View, room_for};
 use rayon::iter::{ParallelExtend, repeat_n};
 use std::time::Instant;
@@ -14,8 +15,9 @@ const LARGE: usize = 100_000;
 /// A triangulation in device memory, lent until the next call.
 ///
 /// The arrays are those of [`Triangulation`], in the same order and numbering: 12 bytes a triangle for its corners
-/// (`[u32; 3]`, the smallest first, counterclockwise), 12 for its neighbors ([`polder_mesh::NONE`] at the hull), 4 bytes an
-/// input point for the vertex that it is or equals.
+/// (`[u32; 3]`, the smallest first, counterclockwise), 12 for its neighbors ([`polder_mesh::NONE`] at the hull), a byte for
+/// its constrained edges (bit `k` for the edge opposite corner `k`, which is the one that neighbor `k` lies across), 4 bytes
+/// an input point for the vertex that it is or equals. The vertices along constraints are [`ChainsOnDevice`].
 #[derive(Debug)]
 pub struct OnDevice<'a> {
     engine: &'a mut Engine,
@@ -24,12 +26,23 @@ pub struct OnDevice<'a> {
     started: Instant,
 }
 
+/// For each constraint the vertices along it from its first end to its second, in device memory: chain `i` is
+/// `vertices[offsets[i]..offsets[i + 1]]`, of one vertex where a constraint has no length.
+#[derive(Clone, Copy, Debug)]
+pub struct ChainsOnDevice<'a> {
+    /// One number more than constraints: where chains begin, and where the last one ends.
+    pub offsets: View<'a, u32>,
+    /// The vertices of all chains, one chain behind the other.
+    pub vertices: View<'a, u32>,
+}
+
 impl<'a> OnDevice<'a> {
     pub(super) fn new(engine: &'a mut Engine, held: Option<(&'a Held, Found)>, report: Report) -> Self {
         Self { engine, held, report, started: Instant::now() }
     }
 
-    /// How it came about.
+    /// How it came about. Of constraints the numbers are told; which ones have no length or repeat others is told once
+    /// the triangulation has been [fetched](Self::fetch).
     pub fn report(&self) -> &Report {
         &self.report
     }
@@ -59,6 +72,28 @@ impl<'a> OnDevice<'a> {
         Ok(self.held.as_ref().map(view).transpose()?)
     }
 
+    /// A byte for each triangle, whose bit `k` says that edge `k` is constrained; nothing if there was no point.
+    ///
+    /// # Errors
+    ///
+    /// None that can be caused.
+    pub fn constrained(&self) -> Result<Option<View<'a, u8>>, Error> {
+        let view = |(held, _): &(&'a Held, Found)| held.canonical.constrained().slice(0..self.triangle_count());
+        Ok(self.held.as_ref().map(view).transpose()?)
+    }
+
+    /// The vertices along each constraint; nothing if there was no constraint.
+    ///
+    /// # Errors
+    ///
+    /// None that can be caused.
+    pub fn chains(&self) -> Result<Option<ChainsOnDevice<'a>>, Error> {
+        match &self.held {
+            Some((held, found)) => held.chains(found),
+            None => Ok(None),
+        }
+    }
+
     /// For each input point the vertex that stands for it; nothing if there was no point.
     pub fn representatives(&self) -> Option<View<'a, u32>> {
         self.held.as_ref().map(|(held, _)| held.canonical.representatives())
@@ -82,19 +117,32 @@ impl<'a> OnDevice<'a> {
     ///
     /// [`Error::DeviceLost`].
     pub fn fetch_into(&mut self, into: &mut Triangulation) -> Result<(), Error> {
-        let Arrays { mut triangles, mut neighbors, mut constrained, mut parts } = std::mem::take(into).into_arrays();
+        let Arrays { mut triangles, mut neighbors, mut constrained, parts } = std::mem::take(into).into_arrays();
+        let Parts { mut representatives, chains } = parts;
+        let (mut offsets, mut vertices) = chains.into_parts();
         let mut downloads = Downloads::new();
         if let (Some(from), Some(across), Some(of)) = (self.triangles()?, self.neighbors()?, self.representatives()) {
-            downloads =
-                downloads.and(from, &mut triangles).and(across, &mut neighbors).and(of, &mut parts.representatives);
+            downloads = downloads.and(from, &mut triangles).and(across, &mut neighbors).and(of, &mut representatives);
         } else {
-            (triangles, neighbors, parts.representatives) = Default::default();
+            (triangles, neighbors, representatives) = Default::default();
+        }
+        let chains = self.chains()?.zip(self.constrained()?);
+        if let Some((chains, bits)) = chains {
+            downloads = downloads.and(bits, &mut constrained);
+            downloads = downloads.and(chains.offsets, &mut offsets).and(chains.vertices, &mut vertices);
         }
         self.engine.fetch(downloads)?;
-        // No constraint, no constrained edge.
-        parts.chains = Chains::default();
-        constrained.clear();
-        constrained.par_extend(repeat_n(0, triangles.len()));
+        let chains = match chains {
+            Some(_) => Chains::from_parts(offsets, vertices).ok_or_else(|| internal("chains do not fit together"))?,
+            None => {
+                // No constraint, no constrained edge.
+                constrained.clear();
+                constrained.par_extend(repeat_n(0, triangles.len()));
+                Chains::default()
+            }
+        };
+        self.report.constraints.name_needless(&chains);
+        let parts = Parts { representatives, chains };
         let made = Triangulation::from_canonical(triangles, neighbors, constrained, parts);
         *into = made.map_err(|error| Error::Internal { stage: "canonical_order", what: error.to_string() })?;
         Ok(())
@@ -109,7 +157,11 @@ impl<'a> OnDevice<'a> {
         if triangulation.triangles().len() < triangulation.representatives().len() {
             triangulation.shrink_to_fit();
         }
-        let bytes = 24 * triangulation.triangles().len() + 4 * triangulation.representatives().len();
+        let mut bytes = 24 * triangulation.triangles().len() + 4 * triangulation.representatives().len();
+        if !triangulation.chains().is_empty() {
+            let (offsets, vertices) = (triangulation.chains().offsets(), triangulation.chains().vertices());
+            bytes += triangulation.triangles().len() + size_of_val(offsets) + size_of_val(vertices);
+        }
         let seconds = self.started.elapsed().as_secs_f64();
         let mut report = self.report;
         let counts = [("bytes", bytes as u64)].into();
@@ -119,12 +171,17 @@ impl<'a> OnDevice<'a> {
     }
 }
 
-/// An empty triangulation with room for one of so many points, which fetching need not wait for.
-pub(super) fn room(points: usize) -> Triangulation {
+/// An empty triangulation with room for one of such an input, which fetching need not wait for.
+pub(super) fn room(pslg: &Pslg) -> Triangulation {
+    let (points, constraints) = (pslg.points().len(), pslg.constraints().len());
     if points < LARGE {
         return Triangulation::default();
     }
-    let parts = Parts { representatives: room_for(points), chains: Chains::default() };
+    // Chains of more than two vertices are rare; where there are any, the vertices get room when they come.
+    let mut offsets = room_for(constraints + 1);
+    offsets.push(0);
+    let chains = Chains::from_parts(offsets, room_for(2 * constraints)).unwrap_or_default();
+    let parts = Parts { representatives: room_for(points), chains };
     let made = Triangulation::from_canonical(room_for(2 * points), room_for(2 * points), room_for(2 * points), parts);
     made.unwrap_or_default()
 }

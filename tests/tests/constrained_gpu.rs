@@ -1,0 +1,415 @@
+//! Whole constrained triangulations on a Vulkan device against the CPU, by digest; asserted from the report that no stage ran
+//! on the CPU.
+#![cfg(feature = "gpu-tests")]
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod vulkan_support;
+
+use polder::{
+    Backend, CrossingPolicy, DVec2, Error, Gpu, MeshError, Options, Place, Pslg, Report, triangulate, verify,
+};
+use polder_flip::gpu::Arithmetic;
+use polder_io::generate;
+use polder_tests::constrained_families;
+use polder_vulkan::{Buffer, Device, Engine};
+use std::path::Path;
+
+const STAGES: [&str; 11] = [
+    "upload",
+    "bounds",
+    "voronoi",
+    "dualize",
+    "shift",
+    "insert",
+    "walk",
+    "constrain",
+    "flip",
+    "canonical_order",
+    "download",
+];
+
+fn open(arithmetic: Arithmetic) -> Gpu {
+    let device = Device::open(&vulkan_support::options()).unwrap();
+    Gpu::with_arithmetic(&device, arithmetic).unwrap()
+}
+
+/// The validation layer must have had nothing to say, and no kernel have written past an end.
+fn close(gpu: Gpu) {
+    assert_eq!(gpu.device().validation_messages(), Vec::<String>::new());
+    assert_eq!(gpu.device().overruns(), Vec::<String>::new());
+}
+
+fn on_cpu() -> Options {
+    Options::with_backend(Backend::Cpu)
+}
+
+fn pslg(points: &[(f64, f64)], constraints: &[[u32; 2]]) -> Pslg {
+    Pslg::new(points.iter().copied().map(DVec2::from).collect(), constraints.to_vec()).unwrap()
+}
+
+fn assert_on_device(report: &Report, name: &str) {
+    assert_eq!(report.backend, "vulkan", "{name}");
+    assert_eq!(report.stages_on_cpu().count(), 0, "{name}");
+    let stages: Vec<&str> = report.stages.iter().map(|stage| stage.name).collect();
+    assert_eq!(stages, STAGES, "{name}");
+    for stage in &report.stages {
+        let moved = matches!(stage.name, "upload" | "download");
+        assert_eq!(stage.on, if moved { Place::Transfer } else { Place::Device }, "{name}, {}", stage.name);
+    }
+}
+
+fn assert_same(gpu: &mut Gpu, name: &str, pslg: &Pslg, options: &Options) -> Report {
+    let output = gpu.triangulate(pslg, options).unwrap_or_else(|error| panic!("{name}: {error}"));
+    let expected = triangulate(pslg, &on_cpu()).unwrap();
+    assert_eq!(output.triangulation.digest(), expected.triangulation.digest(), "{name}");
+    assert_eq!(output.triangulation.constrained_bits(), expected.triangulation.constrained_bits(), "{name}");
+    assert_eq!(output.triangulation.chains(), expected.triangulation.chains(), "{name}");
+    assert!(output.triangulation == expected.triangulation, "{name}");
+    assert_eq!(output.triangulation.neighbors(), expected.triangulation.neighbors(), "{name}");
+    let Report { points, constraints, triangles, .. } = expected.report;
+    let found = (&output.report.points, &output.report.constraints, output.report.triangles);
+    assert_eq!(found, (&points, &constraints, triangles), "{name}");
+    assert_on_device(&output.report, name);
+    output.report
+}
+
+#[test]
+fn every_family_has_the_digest_of_the_cpu() {
+    let mut gpu = open(Arithmetic::Filtered);
+    for (name, pslg) in constrained_families(1000, 71) {
+        let report = assert_same(&mut gpu, name, &pslg, &Options::default());
+        let counts = |stage: &str| report.stages.iter().find(|found| found.name == stage).unwrap().counts.clone();
+        assert!(counts("walk")["pieces"] > 0, "{name}");
+        assert!(name != "segments" || counts("constrain")["flips"] > 0, "{name}");
+    }
+    close(gpu);
+}
+
+#[test]
+fn every_family_with_integers_alone() {
+    let mut gpu = open(Arithmetic::Integers);
+    for (name, pslg) in constrained_families(300, 72) {
+        assert_same(&mut gpu, name, &pslg, &Options::default());
+    }
+    close(gpu);
+}
+
+/// Points, constraints, and points again on the same memory.
+#[test]
+fn what_was_there_before_does_not_change_the_result() {
+    let mut gpu = open(Arithmetic::Filtered);
+    let (points, constraints) = generate::segments(1500, 200, 3).into_parts();
+    let plain = Pslg::new(points.clone(), Vec::new()).unwrap();
+    let with = Pslg::new(points.clone(), constraints.clone()).unwrap();
+    let fewer = Pslg::new(points.clone(), constraints[..90].to_vec()).unwrap();
+    let expected = triangulate(&plain, &on_cpu()).unwrap().triangulation;
+    for grid in [None, Some(1), Some(17), Some(300)] {
+        let options = Options { grid, ..Options::default() };
+        let output = gpu.triangulate(&plain, &options).unwrap();
+        assert!(output.triangulation == expected);
+        assert!(output.report.stages.iter().all(|stage| !["walk", "constrain"].contains(&stage.name)));
+        assert_same(&mut gpu, "fewer", &fewer, &options);
+        assert_same(&mut gpu, "with", &with, &options);
+    }
+    let used = gpu.device().memory_use().used;
+    let report = assert_same(&mut gpu, "again", &with, &Options { grid: Some(300), ..Options::default() });
+    assert_eq!(gpu.device().memory_use().used, used, "a call of the same size allocates nothing");
+    let waits = report.device.unwrap().host_waits;
+    assert!(waits <= 10, "{waits}");
+
+    let shuffled = polder_tests::shuffled(&with, 4);
+    let output = gpu.triangulate(&shuffled.pslg, &Options::default()).unwrap();
+    let expected = triangulate(&with, &on_cpu()).unwrap().triangulation;
+    assert_eq!(shuffled.digest_back(&output.triangulation), expected.digest());
+    close(gpu);
+}
+
+#[test]
+fn few_points() {
+    let mut gpu = open(Arithmetic::Filtered);
+    for (name, pslg) in [
+        ("one point", pslg(&[(1.0, 2.0)], &[[0, 0], [0, 0]])),
+        ("two points", pslg(&[(1.0, 2.0), (0.0, 3.0)], &[[1, 0], [0, 1], [1, 1]])),
+        ("one point, again and again", pslg(&[(0.1, 0.2); 5], &[[3, 1], [2, 2]])),
+        ("a triangle", pslg(&[(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)], &[[2, 1]])),
+        ("a square", pslg(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], &[[3, 1]])),
+        ("the other diagonal", pslg(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], &[[2, 0]])),
+        (
+            "duplicates as ends",
+            pslg(
+                &[(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0), (2.0, 2.0), (-0.0, 0.0), (1.0, 1.0), (0.0, -0.0)],
+                &[[4, 7], [5, 2], [0, 5], [6, 6], [3, 6], [7, 1]],
+            ),
+        ),
+        (
+            "through vertices, overlapping, turned",
+            pslg(
+                &[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (1.5, 5.0), (1.5, -5.0)],
+                &[[0, 3], [3, 1], [1, 2], [0, 2], [4, 0], [5, 0]],
+            ),
+        ),
+    ] {
+        assert_same(&mut gpu, name, &pslg, &Options::default());
+    }
+    for count in [3, 4, 5, 7, 31, 33, 127, 257] {
+        for seed in 0..if count < 10 { 8 } else { 1 } {
+            let name = format!("{count} with segments, {seed}");
+            assert_same(&mut gpu, &name, &generate::segments(count, count / 3, seed), &Options::default());
+        }
+    }
+    close(gpu);
+}
+
+#[test]
+fn points_on_a_line() {
+    let mut gpu = open(Arithmetic::Filtered);
+    for count in [2, 3, 100, 257, 2000] {
+        let places = |i: usize| (i * 7919 % count) as f64 * 0.1;
+        let lines: [Vec<DVec2>; 3] = [
+            (0..count).map(|i| DVec2::new(places(i), -3.0)).collect(),
+            (0..count).map(|i| DVec2::new(5.5, places(i))).collect(),
+            (0..count).map(|i| DVec2::splat(places(i / 2))).collect(),
+        ];
+        for points in lines {
+            let ends = |i: usize| [i * 31 % count, i * i * 17 % count].map(|i| i as u32);
+            let pslg = Pslg::new(points, (0..40).map(ends).collect()).unwrap();
+            let report = assert_same(&mut gpu, &format!("{count} on a line"), &pslg, &Options::default());
+            assert_eq!(report.triangles, 0);
+        }
+    }
+    // The memory of a line is not lent to a triangulation.
+    assert_same(&mut gpu, "no line", &generate::segments(2000, 40, 1), &Options::default());
+    close(gpu);
+}
+
+/// One constraint through more vertices than there is room for at first.
+#[test]
+fn constraints_through_very_many_vertices() {
+    let mut gpu = open(Arithmetic::Filtered);
+    let side = 140;
+    let (points, _) = generate::lattice(side, side).into_parts();
+    // Each of the rows runs through all vertices of it: more than two a constraint and those of the start together.
+    let row = |y: u32| [y * side as u32, (y + 1) * side as u32 - 1];
+    let constraints: Vec<[u32; 2]> = (0..6 * side as u32).map(|i| row(i % side as u32)).collect();
+    let pslg = Pslg::new(points, constraints).unwrap();
+    assert!(6 * side * (side - 2) > 2 * 6 * side + (1 << 16));
+    assert_same(&mut gpu, "rows", &pslg, &Options::default());
+    assert_same(&mut gpu, "rows again", &pslg, &Options::default());
+    close(gpu);
+}
+
+fn data(name: &str) -> Pslg {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/data").join(name);
+    polder_io::Input::read(&path).unwrap().pslg
+}
+
+#[test]
+fn real_sets() {
+    let mut gpu = open(Arithmetic::Filtered);
+    for name in ["a_letter.poly", "box.poly", "face.poly", "spiral.poly"] {
+        let pslg = data(name);
+        let report = assert_same(&mut gpu, name, &pslg, &Options::default());
+        assert!(report.constraints.constrained_edges > 0, "{name}");
+        let output = gpu.triangulate(&pslg, &Options::default()).unwrap();
+        assert!(verify::check_triangulation(&pslg, &output.triangulation).is_canonical(), "{name}");
+    }
+    close(gpu);
+}
+
+#[test]
+fn crossings_are_named_as_on_the_cpu() {
+    let mut gpu = open(Arithmetic::Filtered);
+    let square = pslg(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], &[[0, 2], [0, 1], [3, 1], [2, 0]]);
+    let cases = [
+        square,
+        generate::crossing_segments(300, 100, 1.0, 1),
+        generate::crossing_segments(900, 300, 0.1, 2),
+        generate::crossing_segments(60, 20, 0.5, 3),
+    ];
+    for pslg in &cases {
+        for max_crossings in [1_000_000, 7, 1, 0] {
+            let options = Options { max_crossings, ..on_cpu() };
+            let expected = triangulate(pslg, &options).unwrap_err();
+            assert!(matches!(expected, Error::CrossingConstraints { .. }));
+            assert_eq!(gpu.triangulate(pslg, &options).unwrap_err(), expected);
+        }
+        // What crosses leaves nothing behind.
+        assert_same(&mut gpu, "after crossings", &generate::segments(300, 100, 1), &Options::default());
+    }
+    close(gpu);
+}
+
+#[test]
+fn crossings_are_split_as_on_the_cpu() {
+    let mut gpu = open(Arithmetic::Filtered);
+    let splitting = Options { crossings: CrossingPolicy::Split, ..on_cpu() };
+    for (points, constraints, length, seed) in [(4, 2, 2.0, 4), (300, 100, 0.3, 1), (500, 150, 0.1, 2)] {
+        let pslg = generate::crossing_segments(points, constraints, length, seed);
+        let expected = triangulate(&pslg, &splitting).unwrap();
+        let output = gpu.triangulate(&pslg, &splitting).unwrap();
+        assert_eq!(output.triangulation.digest(), expected.triangulation.digest());
+        assert!(output.triangulation == expected.triangulation);
+        let (found, wanted) = (&output.report, &expected.report);
+        assert_eq!((&found.points, &found.constraints), (&wanted.points, &wanted.constraints));
+        // Cutting is the host's work, and said so; all else is the device's.
+        let places: Vec<(&str, Place)> = found.stages.iter().map(|stage| (stage.name, stage.on)).collect();
+        let cut = !output.triangulation.added().is_empty();
+        let on_host: Vec<&str> = found.stages_on_cpu().map(|stage| stage.name).collect();
+        assert_eq!(on_host, if cut { vec!["split"] } else { vec![] });
+        assert_eq!(places.contains(&("crossings_met", Place::Device)), cut);
+        assert!(places.ends_with(&[("canonical_order", Place::Device), ("download", Place::Transfer)]));
+    }
+    // What does not cross is not cut.
+    assert_same(&mut gpu, "segments", &generate::segments(300, 100, 1), &splitting);
+    let limited = Options { max_added_vertices: 3, ..splitting.clone() };
+    let pslg = generate::crossing_segments(300, 100, 0.3, 1);
+    assert_eq!(gpu.triangulate(&pslg, &limited).unwrap_err(), triangulate(&pslg, &limited).unwrap_err());
+    close(gpu);
+}
+
+#[test]
+fn constraints_and_result_may_stay_on_the_device() {
+    let device = Device::open(&vulkan_support::options()).unwrap();
+    let mut own = Engine::new(&device).unwrap();
+    let mut gpu = Gpu::on(&device).unwrap();
+    for (name, pslg) in constrained_families(400, 9) {
+        let expected = triangulate(&pslg, &on_cpu()).unwrap();
+        let points = Buffer::new(&device, "points", pslg.points().len()).unwrap();
+        let constraints = Buffer::new(&device, "constraints", pslg.constraints().len()).unwrap();
+        own.upload(points.view(), pslg.points()).unwrap();
+        own.upload(constraints.view(), pslg.constraints()).unwrap();
+        let made = gpu.triangulate_constrained_on_device(points.view(), constraints.view(), &Options::default());
+        let mut result = made.unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(result.report().stages_on_cpu().count(), 0);
+        let (told, wanted) = (&result.report().constraints, &expected.report.constraints);
+        assert_eq!(told.total, wanted.total, "{name}");
+        assert_eq!(told.through_vertices, wanted.through_vertices, "{name}");
+        assert_eq!(told.constrained_edges, wanted.constrained_edges, "{name}");
+        let (expected, report) = (expected.triangulation, expected.report);
+        assert_eq!(own.download_vec(result.triangles().unwrap().unwrap()).unwrap(), expected.triangles(), "{name}");
+        let bits = own.download_vec(result.constrained().unwrap().unwrap()).unwrap();
+        assert_eq!(bits, expected.constrained_bits(), "{name}");
+        let chains = result.chains().unwrap().unwrap();
+        assert_eq!(own.download_vec(chains.offsets).unwrap(), expected.chains().offsets(), "{name}");
+        assert_eq!(own.download_vec(chains.vertices).unwrap(), expected.chains().vertices(), "{name}");
+        assert!(result.fetch().unwrap() == expected, "{name}");
+        assert_eq!(result.report().constraints, report.constraints, "{name}");
+    }
+    let pslg = generate::crossing_segments(90, 30, 1.0, 2);
+    let points = Buffer::new(&device, "points", pslg.points().len()).unwrap();
+    let constraints = Buffer::new(&device, "constraints", pslg.constraints().len()).unwrap();
+    own.upload(points.view(), pslg.points()).unwrap();
+    own.upload(constraints.view(), pslg.constraints()).unwrap();
+    let all = (points.view(), constraints.view());
+    let error = gpu.triangulate_constrained_on_device(all.0, all.1, &Options::default()).unwrap_err();
+    assert_eq!(error, triangulate(&pslg, &on_cpu()).unwrap_err());
+    let splitting = Options { crossings: CrossingPolicy::Split, ..Options::default() };
+    let error = gpu.triangulate_constrained_on_device(all.0, all.1, &splitting).unwrap_err();
+    assert_eq!(error.kind(), "unsupported");
+
+    // No constraints are as if none were given; indices are looked at before any work.
+    let (none, few) = (constraints.slice(0..0).unwrap(), points.slice(0..0).unwrap());
+    let result = gpu.triangulate_constrained_on_device(all.0, none, &Options::default()).unwrap();
+    assert!(result.chains().unwrap().is_none() && result.triangle_count() > 0);
+    for (points, first) in [(few, 0), (points.slice(0..60).unwrap(), 0)] {
+        let mut bad = vec![[0, 1]; pslg.constraints().len()];
+        bad[17] = [3, 60];
+        bad[23] = [u32::MAX, 3];
+        own.upload(constraints.view(), &bad).unwrap();
+        let error = gpu.triangulate_constrained_on_device(points, all.1, &Options::default()).unwrap_err();
+        let (constraint, index) = if points.is_empty() { (first, 0) } else { (17, 60) };
+        let points = points.len();
+        assert_eq!(error, Error::Input(MeshError::IndexOutOfRange { constraint, index, points }));
+    }
+    drop(own);
+    close(gpu);
+}
+
+#[test]
+fn by_the_facade() {
+    let segments = generate::segments(200, 40, 1);
+    let selection = polder_vulkan::Selection::Environment;
+    let vulkan = Options { device: selection.clone(), ..Options::with_backend(Backend::Vulkan) };
+    let expected = triangulate(&segments, &on_cpu()).unwrap().triangulation;
+    let output = triangulate(&segments, &vulkan).unwrap();
+    assert!(output.triangulation == expected);
+    assert_on_device(&output.report, "vulkan");
+    let report = triangulate(&segments, &Options::default()).unwrap().report;
+    assert_eq!(report.backend, "cpu");
+    assert!(report.why.contains("200 points and 40 constraints; beside"), "{}", report.why);
+    let crossing = generate::crossing_segments(90, 30, 1.0, 2);
+    assert_eq!(triangulate(&crossing, &vulkan).unwrap_err(), triangulate(&crossing, &on_cpu()).unwrap_err());
+    let split = CrossingPolicy::Split;
+    let by = |options: Options| triangulate(&crossing, &Options { crossings: split, ..options }).unwrap().triangulation;
+    assert!(by(vulkan) == by(on_cpu()));
+}
+
+/// Whether the device gives what the CPU gives; prints what it took.
+fn is_same(gpu: &mut Gpu, name: &str, pslg: &Pslg) -> bool {
+    let expected = triangulate(pslg, &on_cpu()).unwrap();
+    gpu.release();
+    let output = match gpu.triangulate(pslg, &Options::default()) {
+        Ok(output) => output,
+        Err(error) => {
+            println!("{name}: {error}");
+            return false;
+        }
+    };
+    assert_on_device(&output.report, name);
+    let of = |name: &str| 1e3 * output.report.stages.iter().find(|stage| stage.name == name).unwrap().seconds;
+    let on_device = output.report.stages.iter().filter(|stage| stage.on == Place::Device);
+    let all: f64 = on_device.map(|stage| 1e3 * stage.seconds).sum();
+    let (digest, waits) = (output.triangulation.digest(), output.report.device.as_ref().unwrap().host_waits);
+    let [walk, constrain, flip] = ["walk", "constrain", "flip"].map(of);
+    let insertion = output.report.stages.iter().find(|stage| stage.name == "constrain").unwrap();
+    println!(
+        "{name}: {digest}, {waits} waits, {all:.2} ms on the device: walk {walk:.2}, constrain {constrain:.2}, flip {flip:.2}; {:?}",
+        insertion.counts
+    );
+    digest == expected.triangulation.digest()
+        && output.triangulation == expected.triangulation
+        && output.report.constraints == expected.report.constraints
+}
+
+/// Takes minutes on a large GPU with many cores beside it; `POLDER_POINTS` says how many points, `POLDER_FAMILY` which ones.
+#[test]
+#[ignore = "long"]
+fn every_large_family_has_the_digest_of_the_cpu() {
+    let points = std::env::var("POLDER_POINTS").map_or(1_000_000, |text| text.parse().unwrap());
+    let wanted = std::env::var("POLDER_FAMILY").ok();
+    let mut gpu = open(Arithmetic::Filtered);
+    let mut failed = Vec::new();
+    for (name, pslg) in constrained_families(points, 1) {
+        if wanted.as_ref().is_none_or(|wanted| wanted == name) && !is_same(&mut gpu, name, &pslg) {
+            failed.push(name);
+        }
+    }
+    assert_eq!(failed, Vec::<&str>::new());
+    close(gpu);
+}
+
+/// Uniform points and a tenth as many constraints of all lengths; and all of examples/data. `POLDER_DATA` is another folder
+/// of inputs.
+#[test]
+#[ignore = "long"]
+fn large_recipes_and_all_real_sets_have_the_digest_of_the_cpu() {
+    let mut gpu = open(Arithmetic::Filtered);
+    let mut failed = Vec::new();
+    let folder =
+        std::env::var("POLDER_DATA").unwrap_or(concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/data").into());
+    let mut inputs: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    inputs.retain(|path| path.extension().is_some_and(|extension| extension == "poly" || extension == "pslg"));
+    inputs.sort();
+    for path in inputs {
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        let pslg = polder_io::Input::read(&path).unwrap().pslg;
+        failed.extend((!is_same(&mut gpu, &name, &pslg)).then_some(name));
+    }
+    let most = std::env::var("POLDER_POINTS").map_or(10_000_000, |text| text.parse().unwrap());
+    for points in [1_000_000, 10_000_000].into_iter().filter(|&points| points <= most) {
+        let name = format!("{points} points, {} constraints", points / 10);
+        failed.extend((!is_same(&mut gpu, &name, &generate::segments(points, points / 10, 1))).then_some(name));
+    }
+    assert_eq!(failed, Vec::<String>::new());
+    close(gpu);
+}
