@@ -63,6 +63,8 @@ enum What {
     Degenerate,
     /// Peak memory.
     Memory,
+    /// Whole constrained triangulations on the Vulkan device that `POLDER_DEVICE` names, or the best one.
+    Constrained,
     /// Whole triangulations on the Vulkan device that `POLDER_DEVICE` names, or the best one.
     Delaunay,
     /// Flips over the triangles that constraints run through, and how many of them each does; no device needed.
@@ -117,6 +119,11 @@ fn run(mut arguments: Arguments) -> Result<(), String> {
         let sizes = (arguments.quick, arguments.full);
         let file = arguments.file.as_deref();
         results.delaunay = Some(gpu::delaunay::run(runs, sizes, !arguments.unchecked, file)?);
+    }
+    if arguments.what.contains(&What::Constrained) {
+        let (runs, sizes) = (arguments.runs.unwrap_or(10), (arguments.quick, arguments.full));
+        let file = arguments.file.as_deref();
+        results.constrained = Some(gpu::constrained::run(runs, sizes, !arguments.unchecked, file)?);
     }
     if arguments.what.contains(&What::Figures) {
         let (file, out) = (arguments.file.as_deref(), arguments.out.as_deref());

@@ -14,6 +14,7 @@ pub(crate) struct Results {
     pub(crate) peers: Vec<timing::Comparison>,
     pub(crate) degenerate: Vec<Vec<timing::Ratio>>,
     pub(crate) memory: Vec<memory::Comparison>,
+    pub(crate) constrained: Option<crate::gpu::constrained::Results>,
     pub(crate) delaunay: Option<crate::gpu::delaunay::Results>,
     pub(crate) voronoi: Option<crate::gpu::voronoi::Results>,
     pub(crate) figures: Option<crate::figures::Results>,
@@ -29,6 +30,7 @@ impl Results {
             peers,
             degenerate,
             memory,
+            constrained: None,
             delaunay: None,
             voronoi: None,
             figures: None,
@@ -79,6 +81,9 @@ impl Results {
         }
         if let Some(delaunay) = &self.delaunay {
             delaunay.print();
+        }
+        if let Some(constrained) = &self.constrained {
+            constrained.print();
         }
         if let Some(voronoi) = &self.voronoi {
             voronoi.print();

@@ -10,14 +10,27 @@ use std::time::{Duration, Instant};
 const WARM_UP: Duration = Duration::from_millis(700);
 /// Bytes of the array that shows how fast memory is; less where there is little.
 const COPIED: usize = 1 << 30;
+/// Kernels in a row that show what one costs at least.
+const DISPATCHES: u32 = 200;
 
 /// What the figures were measured on.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct DeviceFacts {
     pub(crate) name: String,
     pub(crate) driver: String,
     /// Bytes a second, read and written, of a copy.
     pub(crate) bandwidth: f64,
+    /// Seconds from the begin of a kernel that does next to nothing to that of the one behind it.
+    pub(crate) dispatch: f64,
+}
+
+impl DeviceFacts {
+    pub(crate) fn print(&self) {
+        let Self { name, driver, bandwidth, dispatch } = self;
+        let (terabytes, microseconds) = (bandwidth / 1e12, 1e6 * dispatch);
+        println!("\n{name} ({driver})");
+        println!("{terabytes:.2} TB/s read and written by a copy, {microseconds:.1} us for a kernel that does nothing");
+    }
 }
 
 /// One kernel of a recording.
@@ -67,7 +80,26 @@ impl OnDevice {
         let copied = self.measure(|engine, options| engine.run(&recording, options))?;
         let info = self.device.info();
         let bandwidth = 2.0 * (bytes / 4 * 4) as f64 / copied.seconds;
-        Ok(DeviceFacts { name: info.name.clone(), driver: info.driver.clone(), bandwidth })
+        let (name, driver) = (info.name.clone(), info.driver.clone());
+        Ok(DeviceFacts { name, driver, bandwidth, dispatch: self.dispatch()? })
+    }
+
+    fn dispatch(&mut self) -> Result<f64, polder_vulkan::Error> {
+        let words = [(); 2].map(|()| Buffer::<u32>::new(&self.device, "word", 1));
+        let [from, to] = words;
+        let (from, to) = (from?, to?);
+        let mut recording = Recording::new(&self.device);
+        recording.section("dispatches");
+        let copier = Copier::new(&self.device)?;
+        (0..DISPATCHES).for_each(|_| copier.record(&mut recording, from.view(), to.view()));
+        let mut seconds = Vec::new();
+        let start = Instant::now();
+        while start.elapsed() < WARM_UP || seconds.len() < self.runs {
+            let report = self.engine.run(&recording, &RunOptions::default())?;
+            let all = report.sections.iter().map(|(_, timing)| timing.total_ns).sum::<u64>();
+            seconds.push(all as f64 * 1e-9 / f64::from(DISPATCHES));
+        }
+        Ok(crate::timing::median(&seconds[seconds.len() - self.runs..]))
     }
 
     /// Runs something until the card is awake, and then as often as wanted, with timestamps and without in turn.

@@ -149,7 +149,7 @@ fn measured(
 
 impl Results {
     pub(crate) fn print(&self) {
-        let DeviceFacts { name, driver, bandwidth } = &self.device;
+        let DeviceFacts { name, driver, bandwidth, .. } = &self.device;
         println!("\n{name} ({driver}), {:.2} TB/s read and written by a copy", bandwidth / 1e12);
         println!(
             "Milliseconds by timestamps, median of {}; floor: input and output moved once at that speed",
