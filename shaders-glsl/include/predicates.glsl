@@ -8,10 +8,10 @@
 //   EXACT: f64 with a proven error bound, and f64 where it is exact; then integers of any size for the rest. INTEGERS: no
 //   f64 is executed at all. Both know every sign, for all finite coordinates, and never return UNDECIDED. This is how
 //   kernels are made for users, so they need not ask for UNDECIDED.
-// - FAST is EXACT without its integers: half the time to compile, and UNDECIDED for what the filter leaves. A kernel may
-//   put such items on a list that it then works off, compiled as EXACT. Measured, that was slower than EXACT at once for
-//   every kind of points: integers behind the filter cost a tenth of a test where they are not needed, a second dispatch
-//   costs more, and the list costs once more where they are.
+// - FAST is EXACT without its integers: half the time to compile, fewer registers, and UNDECIDED for what the filter leaves.
+//   A kernel may put such items on a list that a second kernel works off, as `takeout_cut` does. Others would lose by it:
+//   integers behind the filter cost a tenth of a test where they are not needed, a second dispatch costs more, and the list
+//   costs once more where they are.
 // - Every call is inlined, and the integers are long: call from few places, in a loop rather than one after the other.
 // - A kernel that includes this file is compiled a second time with NO_FLOAT64 defined, without the capability Float64:
 //   ARITHMETIC is INTEGERS there whatever the constant says. On the host `Arithmetic::kernel` takes the right one.
@@ -29,7 +29,7 @@ BUFFER(ReadPoints, uvec4, 16, readonly);
 const uint FAST = 0u;
 const uint EXACT = 1u;
 const uint INTEGERS = 2u;
-layout(constant_id = 1) const uint ARITHMETIC = FAST;
+layout(constant_id = 1) const uint ARITHMETIC = EXACT;
 
 // Next to the signs -1, 0 and 1, and the answers 0 and 1.
 const int UNDECIDED = 2;

@@ -63,6 +63,24 @@ fn what_is_in_canonical_order_already_is_taken_as_it_is() {
     assert_eq!(fault(&[[0, 3, 1], [0, 3, 1]], &neighbors, &[0, 0]), 1);
     assert_eq!(fault(&[[0, 3, 1], [0, 1, 3]], &neighbors, &[0, 0]), 1);
     assert_eq!(fault(&triangles, &[[1, NONE, 2], [NONE, NONE, 0]], &[0, 0]), 0);
+
+    // Long enough to be checked in pieces, with a fault at every place of some.
+    let long: Vec<[u32; 3]> = (0..70_000).flat_map(|t| [[t, t + 1, t + 2], [t, t + 2, t + 3]]).collect();
+    let count = long.len() as u32;
+    let make = |triangles: &[[u32; 3]], at: usize, neighbor: u32| {
+        let mut neighbors = vec![[NONE, 0, count - 1]; count as usize];
+        neighbors[at][1] = neighbor;
+        let parts = Parts { representatives: (0..70_003).collect(), chains: Chains::default() };
+        Triangulation::from_canonical(triangles.to_vec(), neighbors, vec![0; count as usize], parts)
+    };
+    assert!(make(&long, 7, NONE).is_ok());
+    let broken = |result| matches!(result, Err(MeshError::Broken { triangle, .. }) if triangle == 65536);
+    assert!(broken(make(&long, 65536, count)));
+    for wrong in [[32767, 32769, 32770], [32768, 32769, 32768], [32768, 32768, 32769], [32768, 32769, 70_003]] {
+        let mut triangles = long.clone();
+        triangles[65536] = wrong;
+        assert!(broken(make(&triangles, 0, 0)), "{wrong:?}");
+    }
 }
 
 #[test]

@@ -62,6 +62,7 @@ mod select;
 mod self_test;
 mod shader;
 mod submit;
+mod table;
 mod timing;
 mod transfer;
 

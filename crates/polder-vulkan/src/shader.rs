@@ -133,19 +133,13 @@ impl<'e, 'a> Encoder<'e, 'a> {
         }
     }
 
-    /// A buffer.
-    pub fn buffer<T: Pod>(&mut self, offset: usize, view: View<'a, T>) {
+    /// A buffer; nothing if it is left out.
+    pub fn buffer<T: Pod>(&mut self, offset: usize, view: impl Into<Option<View<'a, T>>>) {
+        let Some(view) = view.into() else { return };
         self.value(offset, view.device_address());
         let argument = self.buffers.iter().find(|argument| argument.offset as usize == offset);
         let access = argument.map_or(Access::ReadWrite, |argument| argument.access);
         self.touches.push(Touch::of(view, access != Access::Read));
-    }
-
-    /// A buffer that may be left out.
-    pub fn optional<T: Pod>(&mut self, offset: usize, view: Option<View<'a, T>>) {
-        if let Some(view) = view {
-            self.buffer(offset, view);
-        }
     }
 }
 
@@ -158,7 +152,7 @@ pub struct Aligned<Bytes: ?Sized>(pub Bytes);
 /// The bytes of a compiled shader, aligned to words.
 #[macro_export]
 macro_rules! include_spirv {
-    ($path:literal) => {{
+    ($path:expr) => {{
         static WORDS: &$crate::Aligned<[u8]> = &$crate::Aligned(*include_bytes!($path));
         &WORDS.0
     }};

@@ -16,13 +16,15 @@ pub(crate) struct Gpu {
     pub(crate) engine: Engine,
 }
 
-/// Watched, and with guard zones around every buffer; or neither.
+/// Watched, and with guard zones around every buffer; or neither. Guard zones are read by the host, which takes long on a
+/// GPU: `POLDER_GUARDED=0` does without them.
 pub(crate) fn options() -> DeviceOptions {
-    let watched = std::env::var("POLDER_VALIDATION").as_deref() != Ok("0");
+    let is_on = |variable| std::env::var(variable).as_deref() != Ok("0");
+    let watched = is_on("POLDER_VALIDATION");
     DeviceOptions {
         selection: Selection::Environment,
         validation: watched,
-        guarded: watched,
+        guarded: watched && is_on("POLDER_GUARDED"),
         memory_cap: None,
         cache: CacheFolder::Off,
     }

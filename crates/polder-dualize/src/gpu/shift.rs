@@ -26,7 +26,7 @@
 use super::shift_buffers::{Row, Word};
 use crate::kernels::*;
 use glam::DVec2;
-use polder_flip::gpu::{Arithmetic, EdgeList, Kernels, Mesh, Tally};
+use polder_flip::gpu::{Arithmetic, EdgeList, Mesh, Tally};
 use polder_voronoi::GridMapping;
 use polder_vulkan::{Device, DeviceKind, Error, Estimate, Kernel, Recording, View};
 
@@ -60,6 +60,9 @@ pub struct Input<'a> {
     pub sites: View<'a, u32>,
 }
 
+/// What the predicates' ARITHMETIC is in a kernel that has the filter alone.
+const FILTER: u32 = 0;
+
 /// The flips that close the hull: kernels, memory for as many slots as the mesh has, and where to count them.
 #[derive(Clone, Copy, Debug)]
 pub struct Flips<'a> {
@@ -84,7 +87,9 @@ pub struct Stage {
     unpin_finish: Kernel<UnpinFinish>,
     pub(super) advance: Kernel<ShiftAdvance>,
     pub(super) elect: Kernel<TakeoutElect>,
-    pub(super) cut: Kernels<TakeoutCut>,
+    /// Leaves to the next one what the filter leaves; not there where there is no f64.
+    pub(super) cut_by_filter: Option<Kernel<TakeoutCut>>,
+    pub(super) cut: Kernel<TakeoutCut>,
     pub(super) link: Kernel<TakeoutLink>,
     pub(super) heirs: Kernel<TakeoutHeirs>,
 }
@@ -98,14 +103,10 @@ impl Stage {
     pub fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
         let wide = if device.info().kind == DeviceKind::Cpu { WIDE_ON_CPU } else { WIDE };
         // The filter for small stars, each by one invocation; for others, a small workgroup each.
-        let cut = match arithmetic {
-            Arithmetic::Filtered => {
-                let small = WORKGROUP_OF_STAR.max(device.info().limits.subgroup);
-                let first = Kernel::new(device, &[("ARITHMETIC", 0)])?;
-                Kernels { first, rest: Some(arithmetic.kernel(device, &[("WORKGROUP", small)])?) }
-            }
-            Arithmetic::Integers => arithmetic.kernels(device, &[])?,
-        };
+        let filtered = arithmetic == Arithmetic::Filtered;
+        let small = WORKGROUP_OF_STAR.max(device.info().limits.subgroup);
+        let constants: &[_] = if filtered { &[("WORKGROUP", small)] } else { &[] };
+        let filter = || Kernel::new(device, &[("ARITHMETIC", FILTER)]);
         Ok(Self {
             device: device.clone(),
             groups: [wide, 1, 1],
@@ -117,7 +118,8 @@ impl Stage {
             unpin_finish: Kernel::new(device, &[])?,
             advance: Kernel::new(device, &[])?,
             elect: Kernel::new(device, &[])?,
-            cut,
+            cut_by_filter: filtered.then(filter).transpose()?,
+            cut: arithmetic.kernel(device, constants)?,
             link: Kernel::new(device, &[])?,
             heirs: Kernel::new(device, &[])?,
         })

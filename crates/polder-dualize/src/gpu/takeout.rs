@@ -58,9 +58,11 @@ impl Stage {
                     round,
                     again: 0,
                 };
-                body.dispatch(&self.cut.first, self.groups, &arguments);
-                if let Some(rest) = &self.cut.rest {
-                    body.dispatch(rest, self.stars, &TakeoutCutArgs { again: 1, ..arguments });
+                if let Some(filter) = &self.cut_by_filter {
+                    body.dispatch(filter, self.groups, &arguments);
+                    body.dispatch(&self.cut, self.stars, &TakeoutCutArgs { again: 1, ..arguments });
+                } else {
+                    body.dispatch(&self.cut, self.groups, &arguments);
                 }
                 let arguments = TakeoutLinkArgs { triangles, links, state, edge_of, edges, words, round };
                 body.dispatch(&self.link, self.groups, &arguments);

@@ -35,7 +35,7 @@ mod record;
 
 pub use buffers::{Buffers, EdgeList, Tally, TallyRead};
 pub use mesh::{CONSTRAINED, HALF_EDGE, MOST_SLOTS, Mesh};
-pub use predicates::{Arithmetic, Kernels, Signs};
+pub use predicates::{Arithmetic, Signs};
 
 use crate::kernels::*;
 use polder_vulkan::{Device, DeviceKind, Error, Estimate, Kernel};

@@ -55,24 +55,6 @@ impl Arithmetic {
             Self::Integers => Kernel::without_float64(device, &with(INTEGERS)),
         }
     }
-
-    /// The same for callers that know of a second kernel, for a list of what the first leaves; it leaves nothing.
-    ///
-    /// # Errors
-    ///
-    /// As [`Arithmetic::kernel`].
-    pub fn kernels<S: Shader>(self, device: &Device, constants: &[(&'static str, u32)]) -> Result<Kernels<S>, Error> {
-        Ok(Kernels { first: self.kernel(device, constants)?, rest: None })
-    }
-}
-
-/// A kernel that decides every item, and none.
-#[derive(Debug, Clone)]
-pub struct Kernels<S> {
-    /// Runs over all items.
-    pub first: Kernel<S>,
-    /// Would run over a list of undecided ones.
-    pub rest: Option<Kernel<S>>,
 }
 
 /// The predicates for many tuples of vertices.
