@@ -2,174 +2,19 @@
 #![cfg(feature = "gpu-tests")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod insert_gpu_support;
 mod vulkan_support;
 
 use glam::DVec2;
+use insert_gpu_support::*;
 use polder_dualize::kernels::*;
 use polder_dualize::reference::kernels::insert as expected;
-use polder_dualize::reference::{self, ToInsert};
 use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_flip::priority;
-use polder_flip::reference::{chain, sweep};
+use polder_flip::reference::chain;
 use polder_mesh::{GhostMesh, NONE};
 use polder_tests::point_families;
-use polder_voronoi::{Options, Resolution};
-use polder_vulkan::{Buffer, Kernel, Shader};
 use vulkan_support::Gpu;
-
-/// Places of words, as in `insert.glsl`.
-const WAITING: usize = 0;
-const NEXT: usize = 1;
-const PARITY: usize = 2;
-const ROUND: usize = 3;
-const GROUPS: usize = 4;
-const FINISHED: usize = 8;
-const CENTER: usize = 9;
-const SITES: usize = 13;
-const CHAIN: usize = 14;
-const FLIPS: usize = 15;
-const INSERTED: usize = 16;
-const DUPLICATES: usize = 17;
-const LOST: usize = 18;
-const OPEN_HULL: usize = 19;
-const CENTER_SLOT: usize = 28;
-const APEX: usize = 29;
-const ENDS: usize = 30;
-const GIVEN: usize = 32;
-
-/// Words before anything has run.
-fn words() -> [u32; 40] {
-    let mut words = [0; 40];
-    words[CENTER_SLOT..CENTER_SLOT + 8].fill(NONE);
-    words
-}
-
-fn run<S: Shader>(gpu: &mut Gpu, items: usize, arguments: &S::Args<'_>) {
-    let kernel = Kernel::<S>::new(&gpu.device, &[]).unwrap();
-    run_kernel(gpu, &kernel, items, arguments);
-}
-
-fn run_kernel<S: Shader>(gpu: &mut Gpu, kernel: &Kernel<S>, items: usize, arguments: &S::Args<'_>) {
-    let mut recording = gpu.recording();
-    recording.dispatch(kernel, polder_vulkan::groups_for(items, 256), arguments);
-    gpu.run(&recording);
-}
-
-/// A round about to begin, in the reference and on the device.
-struct Round {
-    mesh: GhostMesh,
-    positions: Vec<DVec2>,
-    slots: Vec<[u32; 2]>,
-    new: ToInsert,
-    begun: expected::Begun,
-    center: [DVec2; 3],
-    waiting: Vec<[u32; 2]>,
-    claims: Vec<[u32; 3]>,
-    rounds: Vec<u32>,
-}
-
-impl Round {
-    fn new(mesh: GhostMesh, positions: Vec<DVec2>, new: ToInsert) -> Self {
-        let count = 2 * positions.len() - 2;
-        let mut padded = GhostMesh::with_slots(count);
-        padded.triangles[..mesh.slots()].copy_from_slice(&mesh.triangles);
-        padded.links[..mesh.slots()].copy_from_slice(&mesh.links);
-        let mut slots = vec![[NONE; 2]; positions.len()];
-        new.points.iter().zip(&new.slots).for_each(|(&point, &pair)| slots[point as usize] = pair);
-        let begun = expected::insert_begin(&padded, positions.len());
-        let center = padded.triangles[begun.center_slot as usize].map(|v| positions[v as usize]);
-        let waiting = expected::insert_wait(&begun, &new.points, &new.starts);
-        let (claims, rounds) = (vec![[NONE; 3]; count], vec![0; positions.len()]);
-        Self { mesh: padded, positions, slots, new, begun, center, waiting, claims, rounds }
-    }
-
-    fn locate(&mut self) -> expected::Located {
-        expected::insert_locate(&self.mesh, &self.positions, self.center, &self.waiting, &mut self.claims).unwrap()
-    }
-
-    fn claim(&mut self, places: &mut [[u32; 2]]) {
-        expected::insert_claim(&self.mesh, &self.waiting, places, &mut self.claims);
-    }
-
-    fn graft(&mut self, places: &mut [[u32; 2]]) -> Vec<[u32; 2]> {
-        let Self { mesh, slots, waiting, claims, rounds, .. } = self;
-        expected::insert_graft(mesh, slots, waiting, places, claims, rounds, 1)
-    }
-
-    fn words(&self) -> [u32; 40] {
-        let mut words = words();
-        words[WAITING] = self.waiting.len() as u32;
-        words[ROUND] = 1;
-        words[SITES] = self.positions.len() as u32;
-        words[LOST] = NONE;
-        words[CENTER_SLOT] = self.begun.center_slot;
-        words[CENTER..CENTER + 3].copy_from_slice(&self.mesh.triangles[self.begun.center_slot as usize]);
-        words
-    }
-
-    fn on(&self, gpu: &mut Gpu, places: &[[u32; 2]], words: &[u32; 40]) -> On {
-        let mesh = Mesh::with_slots(&gpu.device, self.positions.len(), self.mesh.slots()).unwrap();
-        mesh.upload(&mut gpu.engine, &self.mesh, &self.positions).unwrap();
-        let limit = self.waiting.len();
-        let mut waiting = self.waiting.clone();
-        waiting.resize(2 * limit, [7; 2]);
-        let mut held = vec![[7; 2]; limit];
-        held[..places.len()].copy_from_slice(places);
-        On {
-            mesh,
-            waiting: gpu.buffer(&waiting),
-            freed: gpu.buffer(&self.slots),
-            places: gpu.buffer(held.as_flattened()),
-            claims: gpu.buffer(self.claims.as_flattened()),
-            rounds: gpu.buffer(&self.rounds),
-            vertex_of: gpu.buffer(&vec![7; self.positions.len()]),
-            hull: gpu.buffer(&[0]),
-            words: gpu.buffer(words),
-            limit: limit as u32,
-        }
-    }
-}
-
-struct On {
-    mesh: Mesh,
-    waiting: Buffer<[u32; 2]>,
-    freed: Buffer<[u32; 2]>,
-    places: Buffer<u32>,
-    claims: Buffer<u32>,
-    rounds: Buffer<u32>,
-    vertex_of: Buffer<u32>,
-    hull: Buffer<u32>,
-    words: Buffer<u32>,
-    limit: u32,
-}
-
-/// First rounds, with many points for each triangle and with few, outside and on vertices and edges.
-fn rounds() -> Vec<(String, Round)> {
-    let mut all = Vec::new();
-    for options in [Options::default(), Resolution::LongerSide(5).into()] {
-        for (name, pslg) in point_families(500, 41) {
-            let phases = reference::triangulate(pslg.points(), &options).unwrap();
-            let new = reference::points_to_insert(&phases.voronoi.diagram, &phases.voronoi.sites, &phases.shifted);
-            if phases.inserted.bootstrapped || new.is_empty() {
-                continue;
-            }
-            let positions = phases.positions(pslg.points());
-            all.push((format!("{name}, {options:?}"), Round::new(phases.shifted.mesh, positions, new)));
-        }
-    }
-    // Points on edges and vertices.
-    for side in [3, 9] {
-        let coarse = polder_io::generate::lattice(side, side);
-        let (mesh, _) = sweep(coarse.points()).unwrap();
-        let mut positions = coarse.points().to_vec();
-        positions.extend(polder_io::generate::lattice(2 * side, 2 * side).points().iter().map(|p| *p / 2.0));
-        let points: Vec<u32> = ((side * side) as u32..positions.len() as u32).collect();
-        let starts = points.iter().map(|p| p % 9).collect();
-        let new = ToInsert::into_free_slots(&mesh, points, starts);
-        all.push((format!("on edges, {side}"), Round::new(mesh, positions, new)));
-    }
-    all
-}
 
 #[test]
 fn insert_begin() {

@@ -95,6 +95,8 @@ pub(crate) struct HostToHost {
     pub(crate) seconds: f64,
     runs: Vec<f64>,
     upload: f64,
+    /// Those on the device, by timestamps.
+    stages: f64,
     download: f64,
 }
 
@@ -150,10 +152,6 @@ impl Bench {
         let detailed = input.triangulate(gpu, &timed)?;
         let last = reports.last().ok_or("no run")?;
         let device = last.device.as_ref().ok_or("no device")?;
-        let all_stages = |report: &Report| {
-            let stages = report.stages.iter().filter(|stage| stage.on == Place::Device);
-            stages.map(|stage| stage.seconds).sum::<f64>()
-        };
         let runs: Vec<f64> = reports.iter().map(all_stages).collect();
         let kernels: Vec<Kernel> = detailed.device.iter().flat_map(|device| &device.kernels).map(kernel_of).collect();
         let stages = last.stages.iter().map(|stage| self.stage(stage, &reports, &kernels, input));
@@ -174,17 +172,19 @@ impl Bench {
         while start.elapsed() < WARM_UP {
             gpu.triangulate(pslg, &Options::default())?;
         }
-        let (mut runs, mut parts) = (Vec::new(), [Vec::new(), Vec::new()]);
+        let (mut runs, mut stages, mut parts) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
         for _ in 0..if pslg.points().len() > LARGE { 1 } else { self.runs.clamp(1, 5) } {
             let start = Instant::now();
             let output = gpu.triangulate(pslg, &Options::default())?;
             runs.push(start.elapsed().as_secs_f64());
+            stages.push(all_stages(&output.report));
             for (name, part) in ["upload", "download"].iter().zip(&mut parts) {
                 part.extend(output.report.stages.iter().find(|stage| stage.name == *name).map(|stage| stage.seconds));
             }
         }
         let median = crate::timing::median;
-        Ok(HostToHost { seconds: median(&runs), runs, upload: median(&parts[0]), download: median(&parts[1]) })
+        let [upload, download] = parts.map(|part| median(&part));
+        Ok(HostToHost { seconds: median(&runs), runs, upload, stages: median(&stages), download })
     }
 
     fn stage(&self, last: &StageReport, reports: &[Report], kernels: &[Kernel], input: &Input) -> Stage {
@@ -258,6 +258,11 @@ impl Input {
     }
 }
 
+/// Seconds of all stages on the device.
+fn all_stages(report: &Report) -> f64 {
+    report.stages.iter().filter(|stage| stage.on == Place::Device).map(|stage| stage.seconds).sum()
+}
+
 fn kernel_of(kernel: &KernelReport) -> Kernel {
     Kernel { stage: kernel.stage, name: kernel.name, count: kernel.count, seconds: kernel.seconds }
 }
@@ -322,8 +327,8 @@ impl Whole {
                 counts.join(", ")
             );
         }
-        let (upload, download) = (ms(host.upload), ms(host.download));
-        println!("  host to host {:.1} ms: upload {upload:.1}, download {download:.1}", ms(host.seconds));
+        let [all, upload, stages, download] = [host.seconds, host.upload, host.stages, host.download].map(ms);
+        println!("  host to host {all:.1} ms: upload {upload:.1}, stages {stages:.1}, download {download:.1}");
         for kernel in on_device.kernels.iter().filter(|kernel| kernel.seconds > 0.01 * on_device.seconds) {
             let Kernel { stage, name, count, seconds } = kernel;
             println!("    {stage:<16} {name:<22} {count:>5} x {:>9.4} ms", ms(*seconds));
