@@ -2,8 +2,12 @@
 // it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
 // invocations.
 //
-// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead. Where
-// borders are long, as inside rings, pixels are read by windows instead.
+// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead. Seen from
+// its other end they change sides; so each border is followed from one end, where the lower color is on the left, and linked
+// both ways. (A diagram without crossings has no corner that a border leaves by another way than it comes back.)
+//
+// Borders are of very different lengths: the workgroup lists those of as many triangles as it has invocations, and who has
+// come to the end of one takes the next.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x_id = 0, local_size_x = 256) in;
@@ -28,15 +32,19 @@ layout(push_constant, std430) uniform Args {
 
 const uint ROWS = 14u;
 const uint WORDS = 2u * ROWS;
-// Twice so many steps are made one by one.
-const uint SHORT = 4u;
-// No border of a flooded diagram has nearly so many windows.
+// No border of a flooded diagram is nearly as long.
 const uint LONGEST = 1u << 22;
 
 // For each word of the tile: vertices, those with two triangles, its first slot, triangles before it in the tile.
 shared uvec4 words[WORDS];
 // For each triangle of the tile: its corner in the tile, and whether it is the second there.
 shared uint places[WORDS * 64u];
+// Of three colors around one or two are less than the next, so this is room enough. A border's half-edge, the corner and side
+// that it leaves; and its colors.
+shared uvec2 border_starts[2u * WORKGROUP];
+shared uvec2 border_sides[2u * WORKGROUP];
+shared uint border_count;
+shared uint border_next;
 
 uint triangles_of(uvec2 bits) {
     return uint(bitCount(bits.x) + bitCount(bits.y));
@@ -97,72 +105,8 @@ bool reaches(uvec2 sides, inout ivec2 at, inout ivec2 step) {
     return found != sides;
 }
 
-// Corners of a window from one side to the other.
-const int SPAN = 5;
-
-// Goes on along a border through a window of pixels that lie ahead, up to a vertex, which it returns true for, or the
-// window's end. Each step alone would wait for memory; here all pixels are read at once.
-bool crosses(uvec2 sides, ivec2 lean, inout ivec2 at, inout ivec2 step) {
-    lean = ivec2(step.x != 0 ? step.x : lean.x, step.y != 0 ? step.y : lean.y);
-    // The lowest pixel and corner.
-    ivec2 low = at - 1 - (SPAN - 1) * ivec2(lessThan(lean, ivec2(0)));
-    uint64_t is_left = 0ul;
-    uint64_t is_right = 0ul;
-    [[unroll]] for (int k = 0; k < (SPAN + 1) * (SPAN + 1); k++) {
-        ivec2 pixel = low + ivec2(k % (SPAN + 1), k / (SPAN + 1));
-        // Outside of the grid some pixel is read, and not used.
-        uint x = uint(clamp(pixel.x, 0, int(width) - 1));
-        uint y = uint(clamp(pixel.y, 0, int(height) - 1));
-        uint color = colors.at[y * width + x];
-        color = uvec2(pixel) == uvec2(x, y) ? color : GHOST;
-        is_left |= uint64_t(color == sides.x) << k;
-        is_right |= uint64_t(color == sides.y) << k;
-    }
-    low += 1;
-    bool inside = true;
-    bool is_vertex = false;
-    [[unroll]] for (int k = 0; k < 2 * (SPAN - 1); k++) {
-        ivec2 next = at + step - low;
-        inside = inside && !is_vertex && next == clamp(next, 0, SPAN - 1);
-        if (inside) {
-            at += step;
-            // As `ahead` and `reaches`.
-            int sum = step.x + step.y - 1 >> 1;
-            ivec2 left = next + 1 + ivec2(step.x - step.y - 1 >> 1, sum);
-            ivec2 right = next + 1 + ivec2(sum, step.y - step.x - 1 >> 1);
-            int l = left.y * (SPAN + 1) + left.x;
-            int r = right.y * (SPAN + 1) + right.x;
-            if ((is_right >> l & 1ul) != 0ul) {
-                step = ivec2(-step.y, step.x);
-            } else if ((is_left >> r & 1ul) != 0ul) {
-                step = ivec2(step.y, -step.x);
-            } else {
-                is_vertex = (is_left >> l & is_right >> r & 1ul) == 0ul;
-            }
-        }
-    }
-    return is_vertex;
-}
-
-// The half-edge where the border that leaves a corner by side s ends.
-uint follow(uint x, uint y, uint s, uvec2 sides) {
-    // South, east, north, west as a step.
-    ivec2 step = s == 0u ? ivec2(0, -1) : s == 1u ? ivec2(1, 0) : s == 2u ? ivec2(0, 1) : ivec2(-1, 0);
-    ivec2 at = ivec2(x, y);
-    // Most borders are short.
-    bool is_vertex = false;
-    for (uint k = 0u; k < SHORT && !is_vertex; k++) {
-        is_vertex = reaches(sides, at, step) || reaches(sides, at, step);
-    }
-    ivec2 lean = at - ivec2(x, y);
-    for (uint steps = 0u; !is_vertex; steps++) {
-        if (steps >= LONGEST) {
-            return GHOST;
-        }
-        ivec2 before = at;
-        is_vertex = crosses(sides, lean, at, step);
-        lean = ivec2(at.x != before.x ? at.x - before.x : lean.x, at.y != before.y ? at.y - before.y : lean.y);
-    }
+// The half-edge of the vertex that a border with these colors has come to.
+uint arrival(ivec2 at, ivec2 step, uvec2 sides) {
     // It is reached by the opposite side; counterclockwise from there left, right, ahead right, ahead left.
     uvec2 found = ahead(at, step);
     uint arrived = step.y != 0 ? uint(1 - step.y) : uint(2 + step.x);
@@ -171,6 +115,90 @@ uint follow(uint x, uint y, uint s, uvec2 sides) {
     uvec2 before = vertices.at[word] & ((1u << (uint(at.x) & 31u)) - 1u);
     uint slot = first.at[word] + triangles_of(before);
     return half_edge(slot, r == 4u ? 4u : arrived + r & 3u, arrived);
+}
+
+// One border after the other, as long as there are some on the list.
+void follow_borders(uvec2 tile) {
+    bool follows = false;
+    uint h = 0u;
+    uint corner = 0u;
+    uvec2 sides = uvec2(0u);
+    ivec2 at = ivec2(0);
+    ivec2 step = ivec2(0);
+    uint steps = 0u;
+    while (true) {
+        if (!follows) {
+            uint border = atomicAdd(border_next, 1u);
+            if (border >= border_count) {
+                break;
+            }
+            uvec2 start = border_starts[border];
+            sides = border_sides[border];
+            h = start.x;
+            corner = start.y >> 2;
+            at = ivec2(tile + uvec2(corner & 63u, corner / 64u));
+            // South, east, north, west as a step.
+            uint s = start.y & 3u;
+            step = s == 0u ? ivec2(0, -1) : s == 1u ? ivec2(1, 0) : s == 2u ? ivec2(0, 1) : ivec2(-1, 0);
+            steps = 0u;
+            follows = true;
+        }
+        // Two steps a turn, since llvmpipe ends all loops of an invocation after 65535 turns.
+        if (reaches(sides, at, step) || reaches(sides, at, step)) {
+            uint g = arrival(at, step, sides);
+            links.at[h] = g;
+            links.at[g] = h;
+            follows = false;
+        }
+        steps += 2u;
+        if (steps >= LONGEST) {
+            links.at[h] = GHOST;
+            uvec2 from = tile + uvec2(corner & 63u, corner / 64u);
+            atomicMin(lost.at[0], from.y * (width + 1u) + from.x);
+            follows = false;
+        }
+    }
+}
+
+// Writes a triangle of the tile, and lists the borders to be followed from it.
+void write_triangle(uint triangle, uint count, uvec2 tile) {
+    uint corner = places[triangle] >> 1u;
+    bool is_second = (places[triangle] & 1u) != 0u;
+    uvec4 word = words[corner / 32u];
+    uint slot = word.z + triangle - word.w;
+    if (slot >= count) {
+        return;
+    }
+    uvec4 c = colors_around(tile.x + (corner & 63u), tile.y + corner / 64u);
+    uint r = repeated(c);
+    uvec3 corners;
+    if (r == 4u) {
+        corners = is_second ? c.xzw : c.xyz;
+    } else {
+        corners = uvec3(c[r + 1u & 3u], c[r + 2u & 3u], c[r + 3u & 3u]);
+    }
+    [[unroll]] for (uint k = 0u; k < 3u; k++) {
+        uint h = 3u * slot + k;
+        triangles.at[h] = corners[k];
+        if (r == 4u && k == (is_second ? 2u : 1u)) {
+            links.at[h] = is_second ? h - 4u : h + 4u;
+            continue;
+        }
+        uvec2 sides = uvec2(corners[(k + 2u) % 3u], corners[(k + 1u) % 3u]);
+        if (sides.x < sides.y) {
+            uint border = atomicAdd(border_count, 1u);
+            border_starts[border] = uvec2(h, corner << 2 | side(r, is_second, k));
+            border_sides[border] = sides;
+        }
+    }
+    if (corners.x != GHOST && corners.y != GHOST && corners.z != GHOST) {
+        uvec3 at = uvec3(pixels.at[corners.x], pixels.at[corners.y], pixels.at[corners.z]);
+        ivec2 a = ivec2(at.y & 0xffffu, at.y >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);
+        ivec2 b = ivec2(at.z & 0xffffu, at.z >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);
+        if (a.x * b.y <= a.y * b.x) {
+            atomicMin(folded.at[0], slot);
+        }
+    }
 }
 
 void main() {
@@ -213,45 +241,17 @@ void main() {
     }
     barrier();
     uint in_tile = words[WORDS - 1u].w + triangles_of(words[WORDS - 1u].xy);
-    for (uint triangle = rank; triangle < in_tile; triangle += WORKGROUP) {
-        uint corner = places[triangle] >> 1u;
-        bool is_second = (places[triangle] & 1u) != 0u;
-        uvec4 word = words[corner / 32u];
-        uint slot = word.z + triangle - word.w;
-        if (slot >= count) {
-            continue;
+    for (uint begin = 0u; begin < in_tile; begin += WORKGROUP) {
+        if (rank == 0u) {
+            border_count = 0u;
+            border_next = 0u;
         }
-        uint x = tile.x + (corner & 63u);
-        uint y = tile.y + corner / 64u;
-        uvec4 c = colors_around(x, y);
-        uint r = repeated(c);
-        uvec3 corners;
-        if (r == 4u) {
-            corners = is_second ? c.xzw : c.xyz;
-        } else {
-            corners = uvec3(c[r + 1u & 3u], c[r + 2u & 3u], c[r + 3u & 3u]);
+        barrier();
+        if (begin + rank < in_tile) {
+            write_triangle(begin + rank, count, tile);
         }
-        [[unroll]] for (uint k = 0u; k < 3u; k++) {
-            uint h = 3u * slot + k;
-            triangles.at[h] = corners[k];
-            if (r == 4u && k == (is_second ? 2u : 1u)) {
-                links.at[h] = is_second ? h - 4u : h + 4u;
-                continue;
-            }
-            uvec2 sides = uvec2(corners[(k + 2u) % 3u], corners[(k + 1u) % 3u]);
-            uint link = follow(x, y, side(r, is_second, k), sides);
-            links.at[h] = link;
-            if (link == GHOST) {
-                atomicMin(lost.at[0], y * (width + 1u) + x);
-            }
-        }
-        if (corners.x != GHOST && corners.y != GHOST && corners.z != GHOST) {
-            uvec3 at = uvec3(pixels.at[corners.x], pixels.at[corners.y], pixels.at[corners.z]);
-            ivec2 a = ivec2(at.y & 0xffffu, at.y >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);
-            ivec2 b = ivec2(at.z & 0xffffu, at.z >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);
-            if (a.x * b.y <= a.y * b.x) {
-                atomicMin(folded.at[0], slot);
-            }
-        }
+        barrier();
+        follow_borders(tile);
+        barrier();
     }
 }

@@ -56,8 +56,12 @@ define_kernel! {
     /// it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
     /// invocations.
     ///
-    /// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead. Where
-    /// borders are long, as inside rings, pixels are read by windows instead.
+    /// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead. Seen from
+    /// its other end they change sides; so each border is followed from one end, where the lower color is on the left, and linked
+    /// both ways. (A diagram without crossings has no corner that a border leaves by another way than it comes back.)
+    ///
+    /// Borders are of very different lengths: the workgroup lists those of as many triangles as it has invocations, and who has
+    /// come to the end of one takes the next.
     DualizeWrite(DualizeWriteArgs) = "dualize_write";
     buffers {
         0: read colors: View<'a, u32>,
@@ -77,8 +81,8 @@ define_kernel! {
     argument_bytes 80;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "2843a60f37b48fcaf2b47cc48295486a85b152631cfcd39346a0fb7ca36ce946";
+    capabilities ["GroupNonUniform", "PhysicalStorageBufferAddresses", "Shader"];
+    source "ff02a58a68b5b76d71788181f801dfbbb443efdee4a16ee8c46dd7e9205675a5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
