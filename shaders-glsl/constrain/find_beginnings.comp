@@ -106,7 +106,7 @@ uint crossed_near(ivec2 cell, ivec2 aside, Point a, Point b) {
         if (walks) {
             if (event != LEAVES) {
                 walks = second != right;
-                turn_again(walker, twin(links, event == ALONG ? walker.h : next_edge(walker.h)));
+                turn_again(walker, event, links);
             }
         } else {
             left = side_of_first > 0 && left == NONE ? first : left;

@@ -54,11 +54,13 @@ Walker turn_from(uint spoke, Point a, Point b) {
     return Walker(a, b, spoke, spoke, AT_SPOKE, NO_SIDE);
 }
 
-// The same walk goes on from a vertex that it has come to.
-void turn_again(inout Walker walker, uint spoke) {
-    walker.h = spoke;
-    walker.start = spoke;
-    walker.state = AT_SPOKE;
+// The same walk goes on from the vertex that this event has led to.
+void turn_again(inout Walker walker, uint event, ReadU32 links) {
+    // First backward along the edge, or to the corner on the right: the way on is among the next spokes.
+    walker.h = twin(links, event == ALONG ? walker.h : next_edge(walker.h));
+    walker.start = walker.h;
+    walker.state = TURNING;
+    walker.right = event == ALONG ? 0 : -1;
 }
 
 // A walk that is about to leave the triangle of h across h.

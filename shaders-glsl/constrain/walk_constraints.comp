@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "walk.glsl"
 #include "steps.glsl"
+#extension GL_KHR_shader_subgroup_ballot : require
 
 layout(push_constant, std430) uniform Args {
     ReadU32 triangles;
@@ -24,14 +25,19 @@ layout(push_constant, std430) uniform Args {
     uint most; // steps in a dispatch
 };
 
+// Appends a vertex met; one access for all invocations of a subgroup that do so together.
 void meet(uint item, uint number, uint vertex) {
-    if (words.at[STOPS] < MOST_STOPS) {
-        uint place = atomicAdd(words.at[STOPS], 1u);
-        if (place < stop_limit) {
-            stops.at[3u * place] = item;
-            stops.at[3u * place + 1u] = number;
-            stops.at[3u * place + 2u] = vertex;
-        }
+    uvec4 together = subgroupBallot(true);
+    uint place = 0u;
+    if (subgroupElect()) {
+        bool full = words.at[STOPS] >= MOST_STOPS;
+        place = full ? MOST_STOPS : atomicAdd(words.at[STOPS], subgroupBallotBitCount(together));
+    }
+    place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(together);
+    if (place < stop_limit) {
+        stops.at[3u * place] = item;
+        stops.at[3u * place + 1u] = number;
+        stops.at[3u * place + 2u] = vertex;
     }
 }
 
@@ -117,8 +123,7 @@ void main() {
                 if (!done) {
                     meet(item, number, vertex);
                     number++;
-                    // Backward along the edge, or to the corner on the right: the way on is among the next spokes.
-                    turn_again(walker, event == ALONG ? twin(links, walker.h) : twin(links, next_edge(walker.h)));
+                    turn_again(walker, event, links);
                 }
             } else if (event == LOST) {
                 atomicMin(words.at[LOST_WALK], c);

@@ -156,7 +156,9 @@ fn measure(device: &Device, case: &str, pslg: &Pslg) -> Result<(), Failure> {
     let corner = |f: fn(DVec2, DVec2) -> DVec2| positions.iter().copied().reduce(f).unwrap_or_default();
     let grid = Grid::over(corner(DVec2::min), corner(DVec2::max), positions.len());
     println!("  {counts} bytes", counts = memory(positions.len(), count));
-    for grid in [Some(grid), None] {
+    let length = grid.piece_length();
+    let other = |length| Some(grid.with_piece_length(length));
+    for grid in [Some(grid), other(length / 2), other(length / 4), other(2 * length), None] {
         let mut recording = Recording::new(device);
         let input = Input { constraints: constraints.view(), names, grid };
         let read = stage.record(&mut recording, &mesh, &buffers, input)?;
@@ -164,7 +166,10 @@ fn measure(device: &Device, case: &str, pslg: &Pslg) -> Result<(), Failure> {
         let counts = read.result(&report)?;
         let chains = engine.download_vec(buffers.chains())?;
         let equal = expected.chains.iter().flatten().eq(chains[..counts.chained as usize].iter());
-        println!("  {}: chains are equal: {equal}; {counts:?}", if grid.is_some() { "in pieces" } else { "whole" });
+        println!(
+            "  {}: chains are equal: {equal}; {counts:?}",
+            grid.map_or("whole".to_owned(), |grid| format!("pieces of {}", grid.piece_length()))
+        );
         if grid.is_some() {
             let pieces = engine.download_vec(buffers.pieces().pieces())?;
             let room = pieces.len().min(engine.download_vec(buffers.pieces().count())?[0] as usize);

@@ -68,6 +68,12 @@ impl Grid {
         self.size
     }
 
+    /// The length of a piece, in 64ths of a cell.
+    #[doc(hidden)]
+    pub fn piece_length(&self) -> u32 {
+        self.piece_length
+    }
+
     /// The length of a piece other than the usual one, in 64ths of a cell: for tests.
     #[doc(hidden)]
     pub fn with_piece_length(self, piece_length: u32) -> Self {

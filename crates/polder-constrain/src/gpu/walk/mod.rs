@@ -127,7 +127,7 @@ impl Stage {
     pub fn with_arithmetic(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
         let workgroup = [("WORKGROUP", WORKGROUP)];
         // lavapipe leaves a shader, without a word, once its loops have made 65535 turns.
-        let most = if device.info().kind == DeviceKind::Cpu { 128 } else { 4096 };
+        let most = if device.info().kind == DeviceKind::Cpu { 128 } else { 8192 };
         Ok(Self {
             device: device.clone(),
             most,
