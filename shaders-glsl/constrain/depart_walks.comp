@@ -3,6 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "appending.glsl"
+#include "count.glsl"
 #include "steps.glsl"
 
 layout(push_constant, std430) uniform Args {
@@ -13,8 +14,9 @@ layout(push_constant, std430) uniform Args {
     MaybeReadU32 counter; // how many there are, else all
     ReadU32 spokes;
     ReadU32 degrees;
-    U32x2 walkers; // of even rounds, then of odd ones
-    U32 lost;      // by sub-constraint, whether it met another one that has a lower priority
+    WriteU32 walkers;
+    WriteU32 firsts; // by sub-constraint that walks, the half-edge that it crosses first
+    U32 lost;        // by sub-constraint, whether it met another one that has a lower priority
     U32 words;
     uint limit; // sub-constraints that there is room for
     uint most;  // spokes that any turn takes
@@ -23,29 +25,18 @@ layout(push_constant, std430) uniform Args {
 shared uint inserted;
 
 void main() {
-    uint outer = words.at[OUTER];
-    uint from = (outer & 1u) * limit;
-    uint to = limit - from;
-    bool first = outer == 0u;
-    uint end = first ? limit : words.at[WALKERS + (outer & 1u)];
-    if (first && present(counter)) {
-        end = min(counter.at[0], limit);
-    }
+    bool first = words.at[OUTER] == 0u;
+    bool nobody = words.at[GOES_ON] != 0u || (!first && words.at[WAITED] == 0u);
+    uint end = nobody ? 0u : length_of(counter, limit);
     if (gl_LocalInvocationIndex == 0u) {
         inserted = 0u;
     }
     barrier();
     for (uint begin = group_index() * WORKGROUP; begin < end; begin += item_stride()) {
-        uint i = begin + gl_LocalInvocationIndex;
-        uint s = i;
-        bool takes = i < end;
-        if (takes && !first) {
-            s = walkers.at[from + i].x;
-            takes = lost.at[s] != 0u;
-        }
+        uint s = begin + gl_LocalInvocationIndex;
         bool walks = false;
         uint h = NONE;
-        if (takes) {
+        if (s < end && (first || lost.at[s] != 0u)) {
             lost.at[s] = 0u;
             uvec2 ends = sub_constraints.at[s];
             if (degrees.at[ends.y] < degrees.at[ends.x]) {
@@ -71,9 +62,10 @@ void main() {
                 }
             }
         }
-        uint place = place_in(words, WALKERS + (outer & 1u ^ 1u), walks);
+        uint place = place_in(words, WALKERS, walks);
         if (walks) {
-            walkers.at[to + place] = uvec2(s, h);
+            walkers.at[place] = s;
+            firsts.at[s] = h;
         }
     }
     barrier();

@@ -24,7 +24,8 @@ void main() {
     uint parity = words.at[ROUND] & 1u;
     uint count = words.at[CANDIDATES + parity];
     bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
-    uint end = count >= least && !fails ? count : 0u;
+    bool goes_on = words.at[GOES_ON] == 0u || words.at[INNER] < words.at[INNER_LIMIT];
+    uint end = count >= least && goes_on && !fails ? count : 0u;
     if (gl_LocalInvocationIndex < 4u) {
         flips_of_group[gl_LocalInvocationIndex] = 0u;
     }

@@ -5,11 +5,11 @@
 
 #include "items.glsl"
 #include "mesh.glsl"
+#include "pieces.glsl"
 
 BUFFER(SharedU32, uint, 4, coherent);
 BUFFER(U32x2, uvec2, 8, );
 BUFFER(SharedU32x2, uvec2, 8, coherent);
-BUFFER(ReadU32x2, uvec2, 8, readonly);
 
 #ifdef COHERENT
 #define WORDS SharedU32
@@ -26,12 +26,16 @@ const uint LEFT = 0u;
 const uint INSERTED = 1u;
 // The number of the outer round.
 const uint OUTER = 2u;
-// Whether a round changed nothing, or there were too many.
+// Whether the inner rounds of this outer round go on: then nobody departs.
+const uint GOES_ON = 3u;
+// How many inner rounds this outer round has; NONE if they go on to the end.
+const uint INNER_LIMIT = 4u;
+// Whether a round changed nothing.
 const uint STUCK = 5u;
-// Walkers of even and of odd outer rounds.
-const uint WALKERS = 6u;
-// Triangles that got their owner in this outer round.
-const uint MARKED = 8u;
+// Walkers of this outer round.
+const uint WALKERS = 8u;
+// Whether any triangle got its owner in this outer round.
+const uint MARKED = 6u;
 // Sub-constraints that walked in this outer round and do not own their whole chain; and those of the round before.
 const uint LOSERS = 9u;
 const uint WAITED = 10u;
@@ -46,6 +50,8 @@ const uint ROUND_NOW = 16u;
 const uint INNER = 17u;
 // What the turn before has seen of flips and insertions.
 const uint PROGRESS = 18u;
+// What had been walked before this outer round, in two words.
+const uint WALKED_BEFORE = 34u;
 // What is reported; sums have two words, the low one first.
 const uint EDGES_ALREADY = 20u;
 const uint INTERSECTIONS = 22u;

@@ -1,5 +1,5 @@
 // Steps 2 and 3 of an outer round: walkers claim each triangle that they cross; the least word says who owns it. Who finds a
-// lower word, or has its own replaced, does not own its whole chain.
+// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "insert.glsl"
@@ -10,15 +10,19 @@ layout(push_constant, std430) uniform Args {
     ReadU32 links;
     ReadPoints positions;
     ReadU32x2 sub_constraints;
-    ReadU32x2 walkers; // of even rounds, then of odd ones
+    ReadU32 degrees;
+    ReadU32 walkers;
+    ReadU32 firsts;
+    ReadU32 runs; // by walker: where its later pieces stand, or NONE
+    U32x4 pieces;
+    ReadU32 piece_count;
+    WriteU32 piece_walked; // by later piece, the triangles that it crossed
     U32 lost;
     U32 owner;
     WriteU32 state; // of which the stamps say who got its owner in this round
-    WriteU32 marked;
     U32 words;
     uint stride;
-    uint limit; // sub-constraints that there is room for
-    uint most;  // triangles that any walk takes
+    uint piece_limit;
 };
 
 shared uint walked;
@@ -33,62 +37,109 @@ void own(uint s, uint word, uint t, uint stamp) {
     uint old = atomicMin(owner.at[t], word);
     if (old == FREE) {
         state.at[2u * stride + t] = stamp;
-        marked.at[atomicAdd(words.at[MARKED], 1u)] = t;
     } else if (!same_owner(old, word)) {
         lose(old < word ? s : owner_of(old));
     }
 }
 
 void main() {
-    uint into = words.at[OUTER] & 1u ^ 1u;
-    uint end = words.at[DEPART_FAULT] == NONE ? words.at[WALKERS + into] : 0u;
+    uint count = words.at[DEPART_FAULT] == NONE ? words.at[WALKERS] : 0u;
+    uint end = count == 0u ? 0u : count + min(piece_count.at[0], piece_limit);
     uint stamp = words.at[ROUND] << 2 | LISTED;
     if (gl_LocalInvocationIndex == 0u) {
         walked = 0u;
     }
+    if (item_index() == 0u && count != 0u) {
+        words.at[MARKED] = 1u;
+    }
     barrier();
-    uint steps = 0u;
+    uint sum = 0u;
     for (uint i = item_index(); i < end; i += item_stride()) {
-        uvec2 entry = walkers.at[into * limit + i];
-        uint s = entry.x;
-        uint h = entry.y;
-        uvec2 ends = sub_constraints.at[s];
-        // Words are those of the direction from the lower end to the higher one.
-        bool reversed = apex(triangles, h) == ends.y;
-        ends = reversed ? ends.yx : ends;
-        Point a = point_at(positions, ends.x);
-        Point b = point_at(positions, ends.y);
-        uint mine = scatter(s, OWNER_BITS) << 4;
-        uint entered = NO_EDGE;
-        uint fault = ASTRAY;
-        for (uint step = 0u; step < most; step++) {
-            uint g = links.at[h];
-            if ((g & CONSTRAINED) != 0u) {
-                fault = g == NONE ? ASTRAY : BLOCKED;
-                break;
+        bool later = i >= count;
+        uint s;
+        uint h;
+        uint number = 0u;
+        uint run;
+        uint rest; // the pieces from there on are those after this one
+        uint rest_end = 0u;
+        if (later) {
+            rest = i - count;
+            uvec4 piece = pieces.at[rest];
+            s = piece.x;
+            h = piece.z;
+            number = piece_number(piece);
+            run = first_piece(piece, rest);
+            rest_end = pieces_end(piece, run);
+            rest++;
+        } else {
+            s = walkers.at[i];
+            h = firsts.at[s];
+            run = runs.at[s];
+            rest = run;
+            if (run != NONE) {
+                rest_end = pieces_end(pieces.at[run], run);
             }
-            uint edge = h % 3u;
-            own(s, mine | (reversed ? entered << 2 | edge : edge << 2 | entered), h / 3u, stamp);
-            steps++;
-            entered = g % 3u;
-            uint w = apex(triangles, g);
-            if (w >= DELETED) {
-                break;
-            }
-            int side = orient2d(a, b, point_at(positions, w));
-            if (side == 0) {
-                own(s, mine | (reversed ? entered << 2 | NO_EDGE : NO_EDGE << 2 | entered), g / 3u, stamp);
-                steps++;
-                fault = w == ends.y ? NONE : THROUGH_VERTEX;
-                break;
-            }
-            h = side > 0 ? next_edge(g) : prev_edge(g);
         }
-        if (fault != NONE) {
-            atomicMin(words.at[WALK_FAULT], s << 2 | fault);
+        uint until = rest_end == 0u ? NONE : next_beginning(pieces, rest, rest_end);
+        uint steps = 0u;
+        // Where a piece would begin at a vertex, the one before runs through that.
+        if (!later || (h != until && (h & AT_VERTEX) == 0u)) {
+            uvec2 ends = sub_constraints.at[s];
+            // Words are those of the direction from the lower end to the higher one.
+            bool reversed = degrees.at[ends.y] < degrees.at[ends.x];
+            ends = reversed ? ends.yx : ends;
+            Point a = point_at(positions, ends.x);
+            Point b = point_at(positions, ends.y);
+            uint mine = scatter(s, OWNER_BITS) << 4;
+            uint entered = NO_EDGE;
+            uint fault = ASTRAY;
+            bool owns = !later;
+            // No walk crosses an edge twice.
+            uint most = 2u * stride;
+            for (uint step = 0u; step < most; step++) {
+                uint g = links.at[h];
+                if (owns) {
+                    uint edge = h % 3u;
+                    own(s, mine | (reversed ? entered << 2 | edge : edge << 2 | entered), h / 3u, stamp);
+                    steps++;
+                    if (h == until) {
+                        fault = NONE;
+                        break;
+                    }
+                }
+                owns = true;
+                if ((g & CONSTRAINED) != 0u) {
+                    fault = g == NONE ? ASTRAY : BLOCKED;
+                    break;
+                }
+                entered = g % 3u;
+                uint w = apex(triangles, g);
+                if (w >= DELETED) {
+                    break;
+                }
+                int side = orient2d(a, b, point_at(positions, w));
+                if (side == 0) {
+                    own(s, mine | (reversed ? entered << 2 | NO_EDGE : NO_EDGE << 2 | entered), g / 3u, stamp);
+                    steps++;
+                    fault = w == ends.y ? NONE : THROUGH_VERTEX;
+                    if (run != NONE) {
+                        atomicMin(pieces.at[run].w, number);
+                    }
+                    break;
+                }
+                h = side > 0 ? next_edge(g) : prev_edge(g);
+            }
+            if (fault != NONE) {
+                atomicMin(words.at[WALK_FAULT], s << 2 | fault);
+            }
+        }
+        if (later) {
+            piece_walked.at[i - count] = steps;
+        } else {
+            sum += steps;
         }
     }
-    atomicAdd(walked, steps);
+    atomicAdd(walked, sum);
     barrier();
     if (gl_LocalInvocationIndex == 0u && walked != 0u) {
         add_wide(words, WALKED, walked);

@@ -1,7 +1,6 @@
 // The end of an outer round, in one workgroup. While few pairs may be flipped it makes the inner rounds that are left of this
-// outer round, from the claims of one to the claims of the next: the same rounds as by the wide kernels. If each
-// sub-constraint that is not in yet owns its whole chain, it goes on as far as it is allowed to. Then it turns to the next
-// outer round.
+// outer round, from the claims of one to the claims of the next: the same rounds as by the wide kernels. Then it turns to the
+// next outer round, or has the inner rounds go on.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #define COHERENT
@@ -19,11 +18,13 @@ layout(push_constant, std430) uniform Args {
     MaybeReadU32 counter; // how many sub-constraints there are, else all
     SharedU32 words;
     uint stride;
-    uint limit;       // sub-constraints that there is room for
-    uint inner;       // inner rounds of an outer round
-    uint least;       // so many pairs are left to other kernels, four times as many once it has begun
-    uint most;        // rounds
-    uint most_pairs;  // pairs taken, but for those of the last round
+    uint limit;      // sub-constraints that there is room for
+    uint least;      // so many pairs are left to other kernels, four times as many once it has begun
+    uint most;       // rounds
+    uint most_pairs; // pairs taken, but for those of the last round
+    uint inner;      // inner rounds of an outer round,
+    uint long_chain; // once more for so many triangles of an average walk
+    uint most_times;
 };
 
 shared uint flips[4];
@@ -34,30 +35,44 @@ void wait() {
     barrier();
 }
 
-// What the next outer round finds; by one invocation.
-void turn(uint rounds) {
-    uint outer = words.at[OUTER];
-    uint count = limit;
-    if (present(counter)) {
-        count = min(counter.at[0], limit);
+// How many inner rounds this outer round has, when all of it is marked.
+uint limit_of_round() {
+    if (words.at[LOSERS] == 0u) {
+        return NONE;
     }
-    uint waited = outer == 0u ? count : words.at[WAITED];
+    uint64_t before = packUint2x32(uvec2(words.at[WALKED_BEFORE], words.at[WALKED_BEFORE + 1u]));
+    uint64_t walked = packUint2x32(uvec2(words.at[WALKED], words.at[WALKED + 1u])) - before;
+    uint64_t walkers = uint64_t(max(words.at[WALKERS], 1u));
+    return inner * uint(min(1ul + walked / (uint64_t(long_chain) * walkers), uint64_t(most_times)));
+}
+
+// What the next outer round finds; by one invocation.
+void turn() {
+    uint outer = words.at[OUTER];
+    uint waited = words.at[WAITED];
+    if (outer == 0u) {
+        waited = 1u;
+        for (uint i = 0u; i < 2u; i++) {
+            words.at[INTERSECTIONS + i] = words.at[WALKED + i];
+        }
+    }
     uint losers = words.at[LOSERS];
     words.at[WAITED] = losers;
     words.at[LOSERS] = 0u;
-    words.at[WALKERS + (outer & 1u)] = 0u;
-    if (losers == 0u) {
-        words.at[WALKERS + (outer & 1u ^ 1u)] = 0u;
-    }
     words.at[OUTER_ROUNDS] += uint(waited != 0u);
-    words.at[INNER_ROUNDS] += rounds;
     words.at[INNER] = 0u;
-    words.at[MARKED] = 0u;
     words.at[ROUND] += 2u;
     words.at[OUTER] = outer + 1u;
-    if (outer == 0u) {
-        words.at[INTERSECTIONS] = words.at[WALKED];
-        words.at[INTERSECTIONS + 1u] = words.at[WALKED + 1u];
+    for (uint i = 0u; i < 2u; i++) {
+        words.at[WALKED_BEFORE + i] = words.at[WALKED + i];
+    }
+}
+
+// What is left; by one invocation.
+void look(bool goes_on, bool fails) {
+    uint count = limit;
+    if (present(counter)) {
+        count = min(counter.at[0], limit);
     }
     // Each round flips something, or makes an edge of something.
     uint progress = words.at[INSERTED];
@@ -65,11 +80,13 @@ void turn(uint rounds) {
         progress += words.at[FLIPS + 2u * kind];
     }
     uint left = count - words.at[INSERTED];
-    bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
     if (left != 0u && !fails && progress == words.at[PROGRESS]) {
         words.at[STUCK] = 1u;
     }
     words.at[PROGRESS] = progress;
+    words.at[MARKED] = 0u;
+    words.at[WALKERS] = 0u;
+    words.at[GOES_ON] = uint(goes_on);
     words.at[LEFT] = fails || words.at[STUCK] != 0u ? 0u : left;
 }
 
@@ -79,18 +96,18 @@ void main() {
     uint parity = round & 1u;
     uint count = words.at[CANDIDATES + parity];
     bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
-    bool to_the_end = words.at[LOSERS] == 0u;
-    uint left = fails ? 0u : to_the_end ? most : inner - min(words.at[INNER], inner);
-    uint room = to_the_end ? least : NONE;
-    uint limit_of_taken = to_the_end ? most_pairs : NONE;
+    uint before = words.at[INNER];
+    uint inner_limit = words.at[GOES_ON] == 0u ? limit_of_round() : words.at[INNER_LIMIT];
+    uint left = fails ? 0u : min(inner_limit - min(before, inner_limit), most);
+    uint room = least;
     if (rank < 4u) {
         flips[rank] = 0u;
     }
     barrier();
     uint rounds = 0u;
     uint taken = 0u;
-    while (count != 0u && count < room && rounds < left && taken <= limit_of_taken) {
-        room = min(room, 0x3fffffffu) * 4u;
+    while (count != 0u && count < room && rounds < left && taken <= most_pairs) {
+        room = min(least, 0x3fffffffu) * 4u;
         rounds++;
         round++;
         taken += min(count, NONE - taken);
@@ -133,6 +150,13 @@ void main() {
         for (uint kind = 0u; kind < 3u; kind++) {
             add_wide(words, FLIPS + 2u * kind, flips[kind]);
         }
-        turn(rounds);
+        words.at[INNER_ROUNDS] += rounds;
+        words.at[INNER] = before + rounds;
+        words.at[INNER_LIMIT] = inner_limit;
+        bool goes_on = count != 0u && before + rounds < inner_limit && !fails;
+        if (!goes_on) {
+            turn();
+        }
+        look(goes_on, fails);
     }
 }

@@ -88,15 +88,16 @@ bool flip_pair(
     uint u_out = far_side == -1 ? turned(j, 2u) : far_side == 1 && near_side == -1 ? turned(j, 1u) : NO_EDGE;
     owner.at[t] = near_side == 1 || far_side == 1 ? (word & ~15u) | t_out << 2 | t_in : FREE;
     owner.at[u] = near_side == -1 || far_side == -1 ? (word & ~15u) | u_out << 2 | u_in : FREE;
-    // Each vertex may be that of several flips; any of their half-edges will do.
+    // Half-edges of the other two still leave them. Each vertex may be that of several flips; what any of them writes will do.
     spokes.at[right] = h;
     spokes.at[left] = g;
-    spokes.at[far] = h1;
-    spokes.at[near] = g1;
-    atomicAdd(degrees.at[right], NONE);
-    atomicAdd(degrees.at[left], NONE);
-    atomicAdd(degrees.at[far], 1u);
-    atomicAdd(degrees.at[near], 1u);
+    // Vertices where many sub-constraints end come to have many edges. Nothing else is to be known of degrees.
+    if (near_side == 0) {
+        atomicAdd(degrees.at[near], 1u);
+    }
+    if (far_side == 0) {
+        atomicAdd(degrees.at[far], 1u);
+    }
     return zero;
 }
 

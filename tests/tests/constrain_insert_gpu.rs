@@ -8,6 +8,7 @@ mod vulkan_support;
 use constrain_support::Start;
 use glam::DVec2;
 use polder_constrain::gpu::insert::{Counts, Input, Stage};
+use polder_constrain::gpu::pieces::{self, Grid};
 use polder_constrain::reference::{self, Insertion};
 use polder_constrain::{ConstrainError, Fault, InsertReport};
 use polder_flip::gpu::{Arithmetic, Mesh};
@@ -23,6 +24,9 @@ fn stages() -> (Gpu, Vec<Stage>) {
     (gpu, stages)
 }
 
+/// Room for pieces of walks.
+const PIECES: usize = 4096;
+
 struct Case<'a> {
     mesh: &'a GhostMesh,
     positions: &'a [DVec2],
@@ -34,14 +38,24 @@ fn run(gpu: &mut Gpu, stage: &Stage, case: &Case<'_>, rounds: Option<[u32; 2]>) 
     let mesh = Mesh::with_slots(&gpu.device, case.positions.len(), case.mesh.slots()).unwrap();
     mesh.upload(&mut gpu.engine, case.mesh, case.positions).unwrap();
     let count = case.sub_constraints.len();
-    let buffers = stage.buffers(count, case.mesh.slots()).unwrap();
+    let buffers = stage.buffers(count, PIECES, case.mesh.slots()).unwrap();
     let sub_constraints = gpu.buffer(case.sub_constraints);
     let nothing = vec![0; case.positions.len()];
     let (spokes, degrees) = (gpu.buffer(&nothing), gpu.buffer(&nothing));
     let (spokes, degrees) = (spokes.view(), degrees.view());
-    let input = Input { sub_constraints: sub_constraints.view(), count: None, spokes, degrees };
+    // Every other number of sub-constraints walks in pieces, and short ones.
+    let (low, high) = case.positions.iter().fold((DVec2::MAX, DVec2::MIN), |(a, b), &p| (a.min(p), b.max(p)));
+    let grid = Grid::over(low, high, case.positions.len()).with_piece_length(if count % 4 == 0 { 100 } else { 300 });
+    let list = pieces::Buffers::new(&gpu.device, case.positions.len(), PIECES).unwrap();
+    let in_pieces = count % 2 == 0 && !case.positions.is_empty();
+    let pieces = in_pieces.then_some((grid, &list));
+    let input = Input { sub_constraints: sub_constraints.view(), count: None, spokes, degrees, pieces };
     let mut recording = gpu.recording();
     stage.record_spokes(&mut recording, &mesh, spokes, degrees);
+    if in_pieces {
+        let sow = pieces::Stage::new(&gpu.device, Arithmetic::Integers).unwrap();
+        sow.record_seeds(&mut recording, &mesh, spokes, grid, &list).unwrap();
+    }
     let read = match rounds {
         None => stage.record(&mut recording, &mesh, &buffers, input),
         Some([inner, outer]) => stage.record_rounds(&mut recording, &mesh, &buffers, input, inner, outer),
@@ -190,14 +204,14 @@ fn buffers_for_less_are_refused() {
     let subs = gpu.buffer(&[[0u32, 1]; 10]);
     let vertices = gpu.buffer(&vec![0u32; start.positions.len()]);
     let fewer = vertices.slice(0..start.positions.len() - 1).unwrap();
-    let enough = stages[0].buffers(10, start.mesh.slots()).unwrap();
-    let few_slots = stages[0].buffers(10, start.mesh.slots() - 1).unwrap();
-    let few_subs = stages[0].buffers(9, start.mesh.slots()).unwrap();
+    let enough = stages[0].buffers(10, 1, start.mesh.slots()).unwrap();
+    let few_slots = stages[0].buffers(10, 1, start.mesh.slots() - 1).unwrap();
+    let few_subs = stages[0].buffers(9, 1, start.mesh.slots()).unwrap();
     for (buffers, spokes) in [(&few_slots, vertices.view()), (&few_subs, vertices.view()), (&enough, fewer)] {
-        let input = Input { sub_constraints: subs.view(), count: None, spokes, degrees: vertices.view() };
+        let input = Input { sub_constraints: subs.view(), count: None, spokes, degrees: vertices.view(), pieces: None };
         let mut recording = gpu.recording();
         assert!(stages[0].record(&mut recording, &mesh, buffers, input).is_err());
         assert!(recording.is_empty());
     }
-    assert!(stages[0].buffers(reference::MOST_SUB_CONSTRAINTS + 1, 10).is_err());
+    assert!(stages[0].buffers(reference::MOST_SUB_CONSTRAINTS + 1, 1, 10).is_err());
 }

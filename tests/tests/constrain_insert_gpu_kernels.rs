@@ -20,10 +20,13 @@ const NONE: u32 = u32::MAX;
 const EXACT: &[(&str, u32)] = &[("ARITHMETIC", 1)];
 /// Places of words, as in `insert.glsl`.
 const INSERTED: usize = 1;
+const GOES_ON: usize = 3;
+const INNER_LIMIT: usize = 4;
 const OUTER: usize = 2;
-const WALKERS: usize = 6;
-const MARKED: usize = 8;
+const WALKERS: usize = 8;
+const MARKED: usize = 6;
 const LOSERS: usize = 9;
+const WAITED: usize = 10;
 const CANDIDATES: usize = 12;
 const TAKEN: usize = 14;
 const ROUND: usize = 15;
@@ -121,11 +124,15 @@ struct On {
     subs: Buffer<[u32; 2]>,
     spokes: Buffer<u32>,
     degrees: Buffer<u32>,
-    walkers: Buffer<[u32; 2]>,
+    walkers: Buffer<u32>,
+    firsts: Buffer<u32>,
+    runs: Buffer<u32>,
+    pieces: Buffer<[u32; 4]>,
+    piece_count: Buffer<u32>,
+    piece_walked: Buffer<u32>,
     lost: Buffer<u32>,
     owner: Buffer<u32>,
     state: Buffer<u32>,
-    marked: Buffer<u32>,
     pairs: Buffer<[u32; 2]>,
     words: Buffer<u32>,
 }
@@ -156,11 +163,15 @@ impl On {
             subs: gpu.buffer(&[case.subs.clone(), vec![[0; 2]]].concat()[..room]),
             spokes: gpu.buffer(&case.spokes),
             degrees: gpu.buffer(&case.degrees),
-            walkers: gpu.buffer(&vec![[7; 2]; 2 * room]),
+            walkers: gpu.buffer(&vec![7; room]),
+            firsts: gpu.buffer(&vec![7; room]),
+            runs: gpu.buffer(&vec![NONE; room]),
+            pieces: gpu.buffer(&[[7; 4]]),
+            piece_count: gpu.buffer(&[0]),
+            piece_walked: gpu.buffer(&[7]),
             lost: gpu.buffer(&vec![0; room]),
             owner: gpu.buffer(&case.scratch.owner),
             state: gpu.buffer(&state),
-            marked: gpu.buffer(&vec![7; slots.max(1)]),
             pairs: gpu.buffer(&pairs),
             words: gpu.buffer(&all),
         }
@@ -201,7 +212,7 @@ impl On {
     fn assert_spokes(&self, gpu: &mut Gpu, case: &Case) {
         assert!(gpu.fetch(self.degrees.view()) == case.degrees, "{}", case.name);
         for (v, &h) in gpu.fetch(self.spokes.view()).iter().enumerate() {
-            assert_eq!(h == NONE, case.degrees[v] == 0, "{}: {v}", case.name);
+            assert_eq!(h == NONE, case.spokes[v] == NONE, "{}: {v}", case.name);
             assert!(h == NONE || case.start.mesh.origin(h) == v as u32, "{}: {v}", case.name);
         }
     }
@@ -226,11 +237,9 @@ fn depart_walks() {
     let mut edges = 0;
     for mut case in cases() {
         let (takes, first) = (case.takes.clone(), case.takes.len() == case.subs.len());
-        let outer = if first { 0 } else { 2 };
-        let on = On::new(&mut gpu, &case, &[(OUTER, outer), (WALKERS, case.subs.len() as u32)]);
+        let words = if first { [(OUTER, 0), (WAITED, 0)] } else { [(OUTER, 2), (WAITED, takes.len() as u32)] };
+        let on = On::new(&mut gpu, &case, &words);
         if !first {
-            let all: Vec<[u32; 2]> = (0..case.subs.len() as u32).map(|s| [s, 7]).collect();
-            gpu.engine.upload(on.walkers.slice(0..all.len()).unwrap(), &all).unwrap();
             let lost: Vec<u32> = (0..case.subs.len() as u32).map(|s| u32::from(takes.contains(&s))).collect();
             gpu.engine.upload(on.lost.slice(0..lost.len()).unwrap(), &lost).unwrap();
         }
@@ -243,7 +252,8 @@ fn depart_walks() {
             counter: None,
             spokes: on.spokes.view(),
             degrees: on.degrees.view(),
-            walkers: on.walkers.view().cast(),
+            walkers: on.walkers.view(),
+            firsts: on.firsts.view(),
             lost: on.lost.view(),
             words: on.words.view(),
             limit: room as u32,
@@ -252,8 +262,10 @@ fn depart_walks() {
         run::<DepartWalks>(&mut gpu, EXACT, 2, &arguments);
         let expected = case.depart();
         assert_eq!(expected.fault, None);
-        let count = on.word(&mut gpu, WALKERS + 1) as usize;
-        let walkers = sorted(&gpu.fetch(on.walkers.view())[room..][..count]);
+        let count = on.word(&mut gpu, WALKERS) as usize;
+        let walkers = sorted(&gpu.fetch(on.walkers.view())[..count]);
+        let firsts = gpu.fetch(on.firsts.view());
+        let walkers: Vec<[u32; 2]> = walkers.into_iter().map(|s| [s, firsts[s as usize]]).collect();
         assert!(walkers == sorted(&expected.walkers), "{}", case.name);
         assert_eq!(on.word(&mut gpu, INSERTED), expected.inserted);
         assert_eq!(on.word(&mut gpu, EDGES_ALREADY), if first { expected.inserted } else { 0 });
@@ -279,28 +291,35 @@ fn mark_chains() {
             }
             walkers.retain(|&[s, _]| !polder_flip::priority(s).is_multiple_of(4) || blocked);
             let on = On::new(&mut gpu, &case, &[(OUTER, 3), (WALKERS, walkers.len() as u32)]);
-            gpu.engine.upload(on.walkers.slice(0..walkers.len()).unwrap(), &walkers).unwrap();
+            let list: Vec<u32> = walkers.iter().map(|w| w[0]).collect();
+            gpu.engine.upload(on.walkers.slice(0..list.len()).unwrap(), &list).unwrap();
+            let mut firsts = vec![7; case.subs.len()];
+            walkers.iter().for_each(|&[s, h]| firsts[s as usize] = h);
+            gpu.engine.upload(on.firsts.slice(0..firsts.len()).unwrap(), &firsts).unwrap();
             let arguments = MarkChainsArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
                 sub_constraints: on.subs.view().cast(),
-                walkers: on.walkers.view().cast(),
+                degrees: on.degrees.view(),
+                walkers: on.walkers.view(),
+                firsts: on.firsts.view(),
+                runs: on.runs.view(),
+                pieces: on.pieces.view(),
+                piece_count: on.piece_count.view(),
+                piece_walked: on.piece_walked.view(),
                 lost: on.lost.view(),
                 owner: on.owner.view(),
                 state: on.state.view(),
-                marked: on.marked.view(),
                 words: on.words.view(),
                 stride: on.stride as u32,
-                limit: case.subs.len() as u32,
-                most: case.start.mesh.slots() as u32,
+                piece_limit: 1,
             };
             run::<MarkChains>(&mut gpu, EXACT, 2, &arguments);
             let expected = case.mark(&walkers);
             let parity = case.scratch.round as usize & 1;
             on.assert_state(&mut gpu, &case, parity, None);
-            let count = on.word(&mut gpu, MARKED) as usize;
-            assert!(sorted(&gpu.fetch(on.marked.view())[..count]) == sorted(&expected.triangles), "{}", case.name);
+            assert_eq!(on.word(&mut gpu, MARKED), u32::from(!walkers.is_empty()));
             assert_eq!(u64::from(on.word(&mut gpu, WALKED)), expected.walked);
             assert_eq!(on.word(&mut gpu, LOSERS) as usize, expected.losers.len());
             for (s, &word) in gpu.fetch(on.lost.view()).iter().enumerate() {
@@ -326,18 +345,21 @@ fn configure_pairs() {
     for mut case in cases() {
         let walkers = case.depart().walkers;
         let marked = case.mark(&walkers).triangles;
-        let on = On::new(&mut gpu, &case, &[(MARKED, marked.len() as u32)]);
-        gpu.engine.upload(on.marked.slice(0..marked.len()).unwrap(), &marked).unwrap();
+        let on = On::new(&mut gpu, &case, &[(MARKED, 1)]);
         let arguments = ConfigurePairsArgs {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
             positions: on.mesh.positions().cast(),
             owner: on.owner.view(),
             state: on.state.view(),
-            marked: on.marked.view(),
+            pieces: on.pieces.view(),
+            piece_count: on.piece_count.view(),
+            piece_walked: on.piece_walked.view(),
             pairs: on.pairs.view().cast(),
             words: on.words.view(),
             stride: on.stride as u32,
+            slots: case.start.mesh.slots() as u32,
+            piece_limit: 1,
         };
         run::<ConfigurePairs>(&mut gpu, EXACT, 2, &arguments);
         case.configure(&marked);
@@ -370,7 +392,7 @@ fn flip_pairs() {
         let parity = case.scratch.round as usize & 1;
         let taken = case.pairs.len() as u32;
         for least in [taken + 1, taken] {
-            let on = On::new(&mut gpu, &case, &[]);
+            let on = On::new(&mut gpu, &case, &[(INNER_LIMIT, 8)]);
             let arguments = FlipPairsArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
@@ -441,14 +463,16 @@ fn advance_pairs() {
 #[test]
 fn pair_tail() {
     let mut gpu = Gpu::open();
-    let (mut rounds_of_all, mut left_of_all) = (0, 0);
+    let (mut rounds_of_all, mut left_of_all, mut went_on) = (0, 0, 0);
     for (turn, mut case) in with_pairs().enumerate() {
-        // With walkers that wait, some of eight rounds are left; without, as many as are allowed.
-        for losers in [0, 2] {
+        // Where some of the rounds of this outer round are left, and where as many are made as are allowed.
+        for limit in [NONE, 8] {
             let mut case = case.clone();
-            let most = if losers == 0 { 4 + turn as u32 % 3 } else { 8 - 5 };
-            let least = if losers == 0 { 100 + 10 * turn as u32 } else { 0 };
-            let on = On::new(&mut gpu, &case, &[(LOSERS, losers), (INNER, 5), (OUTER, 4)]);
+            let (inner, losers, outer) = (5, 2, 4);
+            let most = 4 + turn as u32 % 3;
+            let least = 100 + 10 * turn as u32;
+            let words = [(GOES_ON, 1), (LOSERS, losers), (INNER, inner), (INNER_LIMIT, limit), (OUTER, outer)];
+            let on = On::new(&mut gpu, &case, &words);
             let arguments = PairTailArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
@@ -462,29 +486,36 @@ fn pair_tail() {
                 words: on.words.view(),
                 stride: on.stride as u32,
                 limit: case.subs.len() as u32,
-                inner: 8,
                 least,
                 most,
                 most_pairs: NONE,
+                inner: 8,
+                long_chain: 64,
+                most_times: 8,
             };
             run::<PairTail>(&mut gpu, EXACT, 1, &arguments);
-            let bounds = [if losers == 0 { least as usize } else { usize::MAX }, most as usize];
+            let bounds = [least as usize, most.min(limit - inner) as usize];
             let Case { start, pairs, scratch, spokes, degrees, .. } = &mut case;
             let spokes = [&mut spokes[..], degrees];
             let (left, rounds, flips) =
                 kernels::pair_tail(&mut start.mesh, &start.positions, pairs, bounds, scratch, spokes);
             let parity = scratch.round as usize & 1;
-            assert_eq!(on.word(&mut gpu, ROUND), scratch.round + 2);
+            let inner = inner + rounds as u32;
+            let goes_on = !left.is_empty() && inner < limit;
+            assert_eq!(on.word(&mut gpu, GOES_ON), u32::from(goes_on));
+            assert_eq!(on.word(&mut gpu, ROUND), scratch.round + if goes_on { 0 } else { 2 });
             assert_eq!(u64::from(on.word(&mut gpu, INNER_ROUNDS)), rounds);
-            assert_eq!((on.word(&mut gpu, OUTER), on.word(&mut gpu, LOSERS), on.word(&mut gpu, INNER)), (5, 0, 0));
+            let turned = [OUTER, LOSERS, INNER].map(|word| on.word(&mut gpu, word));
+            assert_eq!(turned, if goes_on { [outer, losers, inner] } else { [outer + 1, 0, 0] });
             assert_eq!(on.flips(&mut gpu), flips, "{}", case.name);
             assert!(on.pairs(&mut gpu, parity) == sorted(&left), "{}", case.name);
             on.assert_state(&mut gpu, &case, parity, None);
             on.assert_spokes(&mut gpu, &case);
             rounds_of_all += rounds;
             left_of_all += left.len();
+            went_on += u32::from(goes_on);
         }
         case.flip();
     }
-    assert!(rounds_of_all > 30 && left_of_all > 10, "{rounds_of_all} {left_of_all}");
+    assert!(rounds_of_all > 30 && left_of_all > 10 && went_on > 2, "{rounds_of_all} {left_of_all} {went_on}");
 }

@@ -23,13 +23,14 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "19198732e0af6153a081b5baafae29a9105f064abd799f2be08c4402d9b29384";
+    source "da023d824d04470ebb300e3c6d36d08643c9daae1a4c6a39999a5311a266753c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
 define_kernel! {
     /// The pairs that may be flipped because a triangle of them got its owner in this outer round: they join those that are left
-    /// from the inner rounds before.
+    /// from the inner rounds before. All triangles are looked at, so that pairs are listed in the order of triangles: those nearby
+    /// are worked on together in all rounds after. Also sums up what pieces of walks crossed.
     ConfigurePairs(ConfigurePairsArgs) = "configure_pairs" and "configure_pairs.integers";
     buffers {
         0: read triangles: View<'a, u32>,
@@ -37,19 +38,23 @@ define_kernel! {
         16: read positions: View<'a, [u32; 4]>,
         24: read owner: View<'a, u32>,
         32: both state: View<'a, u32>,
-        40: read marked: View<'a, u32>,
-        48: both pairs: View<'a, [u32; 2]>,
-        56: both words: View<'a, u32>,
+        40: read pieces: View<'a, [u32; 4]>,
+        48: read piece_count: View<'a, u32>,
+        56: read piece_walked: View<'a, u32>,
+        64: both pairs: View<'a, [u32; 2]>,
+        72: both words: View<'a, u32>,
     }
     values {
-        64: stride: u32,
+        80: stride: u32,
+        84: slots: u32,
+        88: piece_limit: u32,
     }
-    argument_bytes 68;
+    argument_bytes 92;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "96c56aadf07a160f0f2d1020e1e447be511907828dafbbbefef2e54026cfdbc4";
+    source "eb219abe4adaf5146b142d828c92c874d394767007e9b986f86ed88972700b75";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -65,20 +70,21 @@ define_kernel! {
         32: maybe_read counter: Option<View<'a, u32>>,
         40: read spokes: View<'a, u32>,
         48: read degrees: View<'a, u32>,
-        56: both walkers: View<'a, [u32; 2]>,
-        64: both lost: View<'a, u32>,
-        72: both words: View<'a, u32>,
+        56: written walkers: View<'a, u32>,
+        64: written firsts: View<'a, u32>,
+        72: both lost: View<'a, u32>,
+        80: both words: View<'a, u32>,
     }
     values {
-        80: limit: u32,
-        84: most: u32,
+        88: limit: u32,
+        92: most: u32,
     }
-    argument_bytes 88;
+    argument_bytes 96;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "eb58fe152f6dc2e430f62e103fb733b57af421959c0f339425b69d877d6c0fae";
+    source "233ab52e08154a21930b859faceea8b597b60d70f118c00199a09472c2de0541";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -188,7 +194,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "7e7a1fe52adf1dc08ba967dd71e463c4602b1ead1a8f5f89c1c8bd52d13d8ac4";
+    source "da4534c07aa27cc59b4ec331a4dbe22a324c494818995b7f00abb0f538cd2df4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -219,30 +225,34 @@ define_kernel! {
 
 define_kernel! {
     /// Steps 2 and 3 of an outer round: walkers claim each triangle that they cross; the least word says who owns it. Who finds a
-    /// lower word, or has its own replaced, does not own its whole chain.
+    /// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers.
     MarkChains(MarkChainsArgs) = "mark_chains" and "mark_chains.integers";
     buffers {
         0: read triangles: View<'a, u32>,
         8: read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read sub_constraints: View<'a, [u32; 2]>,
-        32: read walkers: View<'a, [u32; 2]>,
-        40: both lost: View<'a, u32>,
-        48: both owner: View<'a, u32>,
-        56: written state: View<'a, u32>,
-        64: written marked: View<'a, u32>,
-        72: both words: View<'a, u32>,
+        32: read degrees: View<'a, u32>,
+        40: read walkers: View<'a, u32>,
+        48: read firsts: View<'a, u32>,
+        56: read runs: View<'a, u32>,
+        64: both pieces: View<'a, [u32; 4]>,
+        72: read piece_count: View<'a, u32>,
+        80: written piece_walked: View<'a, u32>,
+        88: both lost: View<'a, u32>,
+        96: both owner: View<'a, u32>,
+        104: written state: View<'a, u32>,
+        112: both words: View<'a, u32>,
     }
     values {
-        80: stride: u32,
-        84: limit: u32,
-        88: most: u32,
+        120: stride: u32,
+        124: piece_limit: u32,
     }
-    argument_bytes 92;
+    argument_bytes 128;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "a1fcbb8312aec900b65d13af13be4e2235a7313338ba69ba7c0e0a91d1dff323";
+    source "bc7d8842f9c415156d6e78fa00efd32379056953d1def1704a18521237bde5fe";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -287,9 +297,8 @@ define_kernel! {
 
 define_kernel! {
     /// The end of an outer round, in one workgroup. While few pairs may be flipped it makes the inner rounds that are left of this
-    /// outer round, from the claims of one to the claims of the next: the same rounds as by the wide kernels. If each
-    /// sub-constraint that is not in yet owns its whole chain, it goes on as far as it is allowed to. Then it turns to the next
-    /// outer round.
+    /// outer round, from the claims of one to the claims of the next: the same rounds as by the wide kernels. Then it turns to the
+    /// next outer round, or has the inner rounds go on.
     PairTail(PairTailArgs) = "pair_tail" and "pair_tail.integers";
     buffers {
         0: both triangles: View<'a, u32>,
@@ -306,16 +315,18 @@ define_kernel! {
     values {
         80: stride: u32,
         84: limit: u32,
-        88: inner: u32,
-        92: least: u32,
-        96: most: u32,
-        100: most_pairs: u32,
+        88: least: u32,
+        92: most: u32,
+        96: most_pairs: u32,
+        100: inner: u32,
+        104: long_chain: u32,
+        108: most_times: u32,
     }
-    argument_bytes 104;
+    argument_bytes 112;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "7f0335b57d929a981c4dc7ed23aebda6557cec8610761b14986dc570de5b93dd";
+    source "e93808759012df07afd1b3992a75a7573ebaaa48c735b1b6b7c16b4495f7d156";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

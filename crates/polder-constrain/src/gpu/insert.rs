@@ -22,8 +22,9 @@
 //! Departures from the reference, none of which shows in the result: only pairs are listed, not triangles; a pair that was not
 //! flipped and of which no triangle has changed is not looked at again; the sides of corners are not kept, as the word has them.
 
+use super::pieces::{self, Grid, Walkers};
 use crate::kernels::*;
-use crate::reference::{INNER_ROUNDS, MOST_SUB_CONSTRAINTS};
+use crate::reference::{INNER_ROUNDS, LONG_CHAIN, MOST_SUB_CONSTRAINTS, MOST_TIMES};
 use crate::{Fault, InsertReport};
 use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_vulkan::{
@@ -45,6 +46,7 @@ enum Word {
     Left = 0,
     Inserted = 1,
     Stuck = 5,
+    Walkers = 8,
     EdgesAlready = 20,
     Intersections = 22,
     Walked = 24,
@@ -80,11 +82,13 @@ pub struct Input<'a> {
     pub count: Option<View<'a, u32>>,
     /// For each vertex a half-edge that leaves it, and how many do. They are kept up.
     pub spokes: View<'a, u32>,
-    /// See there.
+    /// See there. Only what edges are added to the ends of sub-constraints is kept up.
     pub degrees: View<'a, u32>,
+    /// So that long walks go in pieces: a grid over all points, and buffers in which its seeds have been recorded.
+    pub pieces: Option<(Grid, &'a pieces::Buffers)>,
 }
 
-/// What the stage holds beside the mesh: 36 bytes a slot and 20 a sub-constraint.
+/// What the stage holds beside the mesh: 32 bytes a slot, 16 a sub-constraint and 4 a piece.
 #[derive(Debug)]
 pub struct Buffers {
     /// Slots that there is room for, a multiple of four.
@@ -93,20 +97,23 @@ pub struct Buffers {
     /// By triangle: the least key that claims it, in even rounds and again in odd ones; and its stamp.
     state: Buffer<u32>,
     pairs: Buffer<[u32; 2]>,
-    marked: Buffer<u32>,
-    walkers: Buffer<[u32; 2]>,
+    walkers: Buffer<u32>,
+    firsts: Buffer<u32>,
+    runs: Buffer<u32>,
     lost: Buffer<u32>,
+    piece_walked: Buffer<u32>,
+    no_pieces: pieces::Buffers,
     words: Buffer<u32>,
 }
 
 impl Buffers {
     /// Gives all of it; see [`Buffer::give`].
     pub fn give(&self, pool: &Pool) {
-        for words in [&self.owner, &self.state, &self.marked, &self.lost] {
+        for words in [&self.owner, &self.state, &self.walkers, &self.firsts, &self.runs, &self.lost, &self.piece_walked]
+        {
             words.give(pool);
         }
         self.pairs.give(pool);
-        self.walkers.give(pool);
     }
 }
 
@@ -167,6 +174,7 @@ pub struct Stage {
     flip: Kernel<FlipPairs>,
     advance: Kernel<AdvancePairs>,
     tail: Kernel<PairTail>,
+    pieces: pieces::Stage,
 }
 
 impl Stage {
@@ -196,42 +204,49 @@ impl Stage {
             flip: Kernel::new(device, &workgroup)?,
             advance: arithmetic.kernel(device, &workgroup)?,
             tail: arithmetic.kernel(device, &workgroup)?,
+            pieces: pieces::Stage::new(device, arithmetic)?,
         })
     }
 
     /// What [`Stage::buffers`] will hold.
-    pub fn estimate(sub_constraints: usize, slots: usize) -> Estimate {
+    pub fn estimate(sub_constraints: usize, pieces: usize, slots: usize) -> Estimate {
         Estimate::new()
             .buffer::<u32>("owners", slots)
             .buffer::<[u32; 3]>("claims of pairs", slots + 3)
             .buffer::<[u32; 4]>("pairs", slots + 3)
-            .buffer::<u32>("marked triangles", slots)
-            .buffer::<[u32; 4]>("walkers", sub_constraints)
+            .buffer::<u32>("walkers", sub_constraints)
+            .buffer::<u32>("first edges crossed", sub_constraints)
+            .buffer::<u32>("pieces of walkers", sub_constraints)
             .buffer::<u32>("lost", sub_constraints)
+            .buffer::<u32>("triangles of pieces", pieces)
+            .and(pieces::Buffers::estimate(1, 1))
             .buffer::<u32>("constrain words", WORDS)
     }
 
-    /// Memory for so many sub-constraints, and meshes of up to so many slots.
+    /// Memory for so many sub-constraints, lists of so many pieces, and meshes of up to so many slots.
     ///
     /// # Errors
     ///
     /// If there are more sub-constraints than [`MOST_SUB_CONSTRAINTS`], or the memory cannot be had: then before any of it is
     /// allocated.
-    pub fn buffers(&self, sub_constraints: usize, slots: usize) -> Result<Buffers, Error> {
+    pub fn buffers(&self, sub_constraints: usize, pieces: usize, slots: usize) -> Result<Buffers, Error> {
         let (device, stride) = (&self.device, slots.next_multiple_of(4));
         if sub_constraints > MOST_SUB_CONSTRAINTS {
             let why = format!("{sub_constraints} sub-constraints; up to {MOST_SUB_CONSTRAINTS} are possible");
             return Err(Error::Recording { command: "constrain", why });
         }
-        Self::estimate(sub_constraints, slots).check(device)?;
+        Self::estimate(sub_constraints, pieces, slots).check(device)?;
         Ok(Buffers {
             slots: stride,
             owner: Buffer::new(device, "owners", slots)?,
             state: Buffer::new(device, "claims of pairs", 3 * stride)?,
             pairs: Buffer::new(device, "pairs", 2 * stride)?,
-            marked: Buffer::new(device, "marked triangles", slots)?,
-            walkers: Buffer::new(device, "walkers", 2 * sub_constraints)?,
+            walkers: Buffer::new(device, "walkers", sub_constraints)?,
+            firsts: Buffer::new(device, "first edges crossed", sub_constraints)?,
+            runs: Buffer::new(device, "pieces of walkers", sub_constraints)?,
             lost: Buffer::new(device, "lost", sub_constraints)?,
+            piece_walked: Buffer::new(device, "triangles of pieces", pieces.max(1))?,
+            no_pieces: pieces::Buffers::new(device, 1, 1)?,
             words: Buffer::new(device, "constrain words", WORDS)?,
         })
     }
@@ -290,16 +305,27 @@ impl Stage {
             let why = format!("{why}; {vertices} vertices, spokes of {with_spokes}");
             return Err(Error::Recording { command: "constrain", why });
         }
+        let piece_room = buffers.piece_walked.len();
+        if let Some((_, list)) = input.pieces.filter(|(_, list)| list.pieces().len() > piece_room) {
+            let why = format!("{} pieces; buffers for {piece_room}", list.pieces().len());
+            return Err(Error::Recording { command: "constrain", why });
+        }
         if count > 0 {
             Self::record_start(recording, buffers)?;
+            if input.pieces.is_none() {
+                recording.fill(buffers.runs.view(), NONE);
+                recording.fill(buffers.no_pieces.count(), 0);
+            }
             if outer == u32::MAX {
                 let left = buffers.words.slice(Word::Left as usize..Word::Left as usize + 1)?;
                 // Each outer round inserts or flips something, or looks at a tail of thousands of flips.
+                let mut recorded = Ok(());
                 recording.repeat_ahead("insert constraints", left, u32::MAX, FIRST, BATCH, |round| {
-                    self.record_outer(round, mesh, buffers, input, inner);
+                    recorded = self.record_outer(round, mesh, buffers, input, inner);
                 });
+                recorded?;
             } else {
-                (0..outer).for_each(|_| self.record_outer(recording, mesh, buffers, input, inner));
+                (0..outer).try_for_each(|_| self.record_outer(recording, mesh, buffers, input, inner))?;
             }
         } else {
             recording.fill(buffers.words.view(), 0);
@@ -318,12 +344,23 @@ impl Stage {
         Ok(())
     }
 
-    fn record_outer(&self, recording: &mut Recording, mesh: &Mesh, buffers: &Buffers, input: Input<'_>, inner: u32) {
+    fn record_outer(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        input: Input<'_>,
+        inner: u32,
+    ) -> Result<(), Error> {
         let groups = [self.pace.groups, 1, 1];
         let (triangles, links, positions) = (mesh.corners(), mesh.twins(), mesh.positions().cast());
         let (owner, state, words) = (buffers.owner.view(), buffers.state.view(), buffers.words.view());
         let Input { spokes, degrees, .. } = input;
-        let (walkers, lost, marked) = (buffers.walkers.view().cast(), buffers.lost.view(), buffers.marked.view());
+        let (walkers, lost) = (buffers.walkers.view(), buffers.lost.view());
+        let (firsts, runs, piece_walked) = (buffers.firsts.view(), buffers.runs.view(), buffers.piece_walked.view());
+        let list = input.pieces.map_or(&buffers.no_pieces, |(_, list)| list);
+        let (pieces, piece_count, piece_limit) = (list.pieces(), list.count(), list.pieces().len() as u32);
+        let sub_constraints = input.sub_constraints.cast();
         let pairs = buffers.pairs.view().cast();
         let (stride, limit) = (buffers.slots as u32, input.sub_constraints.len() as u32);
         let most = (3 * mesh.capacity()) as u32;
@@ -331,34 +368,58 @@ impl Stage {
             triangles,
             links,
             positions,
-            sub_constraints: input.sub_constraints.cast(),
+            sub_constraints,
             counter: input.count,
             spokes,
             degrees,
             walkers,
+            firsts,
             lost,
             words,
             limit,
             most,
         };
         recording.dispatch(&self.depart, groups, &arguments);
+        if let Some((grid, list)) = input.pieces {
+            let listed = buffers.words.slice(Word::Walkers as usize..Word::Walkers as usize + 1)?;
+            let walkers = Walkers { ends: input.sub_constraints, list: walkers, listed, runs, spokes, degrees };
+            self.pieces.record(recording, mesh, &walkers, grid, list);
+        }
         let arguments = MarkChainsArgs {
             triangles,
             links,
             positions,
-            sub_constraints: input.sub_constraints.cast(),
+            sub_constraints,
+            degrees,
             walkers,
+            firsts,
+            runs,
+            pieces,
+            piece_count,
+            piece_walked,
             lost,
             owner,
             state,
-            marked,
             words,
             stride,
-            limit,
-            most,
+            piece_limit,
         };
         recording.dispatch(&self.mark, groups, &arguments);
-        let arguments = ConfigurePairsArgs { triangles, links, positions, owner, state, marked, pairs, words, stride };
+        let arguments = ConfigurePairsArgs {
+            triangles,
+            links,
+            positions,
+            owner,
+            state,
+            pieces,
+            piece_count,
+            piece_walked,
+            pairs,
+            words,
+            stride,
+            slots: mesh.capacity() as u32,
+            piece_limit,
+        };
         recording.dispatch(&self.configure, groups, &arguments);
         for _ in 0..inner {
             let least = FEW;
@@ -381,11 +442,14 @@ impl Stage {
             words,
             stride,
             limit,
-            inner,
             least: FEW,
             most: self.pace.rounds,
             most_pairs: self.pace.pairs,
+            inner,
+            long_chain: LONG_CHAIN as u32,
+            most_times: MOST_TIMES,
         };
         recording.dispatch(&self.tail, [1, 1, 1], &arguments);
+        Ok(())
     }
 }

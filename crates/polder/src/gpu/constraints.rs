@@ -39,7 +39,8 @@ impl Kernels {
         let sub_constraints = held.walk.sub_constraints();
         let (spokes, degrees) = (held.walk.spokes(), held.walk.degrees());
         let count = Some(held.walk.sub_constraint_count()?);
-        let input = insert::Input { sub_constraints, count, spokes, degrees };
+        let pieces = input.grid.map(|grid| (grid, held.walk.pieces()));
+        let input = insert::Input { sub_constraints, count, spokes, degrees, pieces };
         let insert = self.insert.record(recording, mesh, &held.insert, input)?;
         Ok(Reads { walk, insert })
     }
@@ -68,7 +69,8 @@ impl Needs {
             return Estimate::new();
         }
         let walk = walk::Stage::estimate(points, self.constraints, self.stops);
-        walk.and(insert::Stage::estimate(self.constraints + self.stops, slots))
+        let pieces = walk::Stage::pieces(self.constraints);
+        walk.and(insert::Stage::estimate(self.constraints + self.stops, pieces, slots))
     }
 }
 
@@ -84,7 +86,8 @@ impl Held {
         let points = mesh.vertices();
         let walk = kernels.walk.buffers(points, needs.constraints, needs.stops)?;
         walk.give(pool);
-        let insert = kernels.insert.buffers(walk.sub_constraints().len(), mesh.capacity())?;
+        let pieces = walk.pieces().pieces().len();
+        let insert = kernels.insert.buffers(walk.sub_constraints().len(), pieces, mesh.capacity())?;
         insert.give(pool);
         Ok(Self { walk, insert })
     }

@@ -50,11 +50,14 @@ struct Room {
     pieces: usize,
 }
 
+/// Room for later pieces. Lists of items lie behind each other, each at a multiple of 16 bytes.
+pub(super) fn pieces(constraints: usize) -> usize {
+    (constraints + constraints / 4 + SPARE_PIECES).next_multiple_of(4) - constraints
+}
+
 impl Room {
     fn new(vertices: usize, constraints: usize, stops: usize) -> Self {
-        // Lists of items lie behind each other, each at a multiple of 16 bytes.
-        let items = (constraints + constraints / 4 + SPARE_PIECES).next_multiple_of(4);
-        Self { vertices, constraints, stops, pieces: items - constraints }
+        Self { vertices, constraints, stops, pieces: pieces(constraints) }
     }
 
     /// Constraints and later pieces.

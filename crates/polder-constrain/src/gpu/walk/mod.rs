@@ -155,6 +155,11 @@ impl Stage {
         2 * constraints + (1 << 16)
     }
 
+    /// Room for later pieces of long walks: see [`Buffers::pieces`].
+    pub fn pieces(constraints: usize) -> usize {
+        buffers::pieces(constraints)
+    }
+
     /// What [`Stage::buffers`] will hold.
     pub fn estimate(vertices: usize, constraints: usize, stops: usize) -> Estimate {
         buffers::estimate(vertices, constraints, stops)

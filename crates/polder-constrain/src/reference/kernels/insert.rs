@@ -117,11 +117,11 @@ pub fn mark_chains(
         let (mut h, mut near) = (first, 0);
         let mut fault = Some(Fault::Lost(s));
         for _ in 0..mesh.slots() {
+            own(s, h, [near, -1, 1], reversed, scratch, &mut marked);
             if mesh.is_constrained(h) {
                 fault = Some(Fault::Blocked(s));
                 break;
             }
-            own(s, h, [near, -1, 1], reversed, scratch, &mut marked);
             let Some((g, side)) = enter(mesh, positions, h, line) else { break };
             if side == Sign::Zero {
                 own(s, g, [0, 1, -1], reversed, scratch, &mut marked);
@@ -235,11 +235,10 @@ pub fn flip_pairs(
         if let Some(s) = place::owner(scratch.owner[t]) {
             [scratch.owner[t], scratch.owner[u]] = words_of_flip(s, [k, j], sides);
         }
-        for (v, spoke) in [(right, h), (left, g), (far, next(h)), (near, next(g))] {
-            spokes[v as usize] = spoke;
-        }
-        for (v, by) in [(right, NONE), (left, NONE), (far, 1), (near, 1)] {
-            degrees[v as usize] = degrees[v as usize].wrapping_add(by);
+        spokes[right as usize] = h;
+        spokes[left as usize] = g;
+        for (v, side) in [near, far].into_iter().zip(sides) {
+            degrees[v as usize] += u32::from(side == 0);
         }
         flips[(entry[1] >> 30) as usize] += 1;
         flips[3] += u64::from(zero);
@@ -307,7 +306,7 @@ pub fn pair_tail(
     let (mut rounds, mut flips) = (0, [0; 4]);
     let mut limit = least;
     while !pairs.is_empty() && pairs.len() < limit && rounds < most as u64 {
-        limit = limit.saturating_mul(4);
+        limit = least.saturating_mul(4);
         let made = flip_pairs(mesh, scratch, &mut pairs, [&mut *spokes, &mut *degrees]);
         flips.iter_mut().zip(made).for_each(|(sum, n)| *sum += n);
         pairs = advance_pairs(mesh, positions, &pairs, scratch);
