@@ -7,7 +7,7 @@
 // three times the slot of a triangle, or with ON_EDGE a half-edge, the lower one of its edge; NONE for
 // a point that is done. WON says that it got what it claims.
 //
-// For each slot three words: the least score that claims it, the least priority among points with that score, and by which
+// For each slot three words: the least score that claims it, the least precedence among points with that score, and by which
 // point it was split last: four times its number, and 3 if the point lies inside, or else which of its edges was split.
 #ifndef INSERT_GLSL
 #define INSERT_GLSL
@@ -50,8 +50,7 @@ const uint GIVEN = 32u;
 const uint CHAIN = 14u;
 const uint ENDS = 30u;
 const uint APEX = 29u;
-// Whether edges are flipped in this round; whether the hull could not be closed.
-const uint FLIPS = 15u;
+// Whether the hull could not be closed.
 const uint OPEN_HULL = 19u;
 // What is reported.
 const uint INSERTED = 16u;
@@ -60,6 +59,15 @@ const uint INSERTED_BEFORE = 20u;
 const uint DUPLICATES = 17u;
 // The lowest point whose walk did not end.
 const uint LOST = 18u;
+
+// Who goes first where scores do not tell: `reference::key::precedence`.
+uint precedence(uint point) {
+    uint x = bitfieldReverse(point) + 0x5bd1e995u;
+    x ^= x * 0x6c50b47cu;
+    x ^= x * 0xb82f1e52u;
+    x ^= x * 0xc7afe638u;
+    return x ^ (x * 0x8d22f6e6u);
+}
 
 // The two slots of a point.
 uvec2 slots_of(uint point, ReadU32x2 freed, ReadU32 words) {

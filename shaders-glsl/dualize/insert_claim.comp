@@ -1,5 +1,5 @@
 // Insertion, 2 of 4 of a round: the second step of the claims. Of the points with the least score of a triangle, the one
-// with the least priority gets it. Two words of 32 bits in two steps, since atomics on 64 bits are optional. For a point on
+// with the least precedence gets it. Two words of 32 bits in two steps, since atomics on 64 bits are optional. For a point on
 // an edge the second of its triangles takes the place of its score, which has served: links are about to change.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -29,7 +29,7 @@ void main() {
     if (place == NONE) {
         return;
     }
-    uint mine = priority(waiting.at[words.at[PARITY] * limit + i].x);
+    uint mine = precedence(waiting.at[words.at[PARITY] * limit + i].x);
     uint score = places.at[2u * i + 1u];
     uint h = place & PLACE;
     claim(h / 3u, score, mine);

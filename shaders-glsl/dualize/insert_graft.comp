@@ -27,18 +27,31 @@ void put(uint t, uvec3 corner) {
     triangles.at[3u * t + 2u] = corner.z;
 }
 
+// Rows of two slots; most are neighbors, which makes half as many stores.
+void put_pair(U32 rows, uint s, uint u, uvec3 first, uvec3 second) {
+    if (u == s + 1u && (s & 1u) == 0u) {
+        U32x2 pairs = U32x2(rows);
+        uint at = 3u * (s >> 1);
+        pairs.at[at] = first.xy;
+        pairs.at[at + 1u] = uvec2(first.z, second.x);
+        pairs.at[at + 2u] = second.yz;
+    } else {
+        for (uint k = 0u; k < 3u; k++) {
+            rows.at[3u * s + k] = first[k];
+            rows.at[3u * u + k] = second[k];
+        }
+    }
+}
+
 // Into the triangle t: slot t has a, b, p after, s has b, c, p and u has c, a, p.
 void split_triangle(uint t, uint p, uint s, uint u) {
     uvec3 corner = corners(triangles, t);
     uvec2 outer = uvec2(twin(links, 3u * t), twin(links, 3u * t + 1u));
     triangles.at[3u * t + 2u] = p;
-    put(s, uvec3(corner.y, corner.z, p));
-    put(u, uvec3(corner.z, corner.x, p));
-    link(links, 3u * t, 3u * s + 1u);
-    link(links, 3u * s, 3u * u + 1u);
-    link(links, 3u * u, 3u * t + 1u);
-    links.at[3u * s + 2u] = outer.x;
-    links.at[3u * u + 2u] = outer.y;
+    links.at[3u * t] = 3u * s + 1u;
+    links.at[3u * t + 1u] = 3u * u;
+    put_pair(triangles, s, u, uvec3(corner.y, corner.z, p), uvec3(corner.z, corner.x, p));
+    put_pair(links, s, u, uvec3(3u * u + 1u, 3u * t, outer.x), uvec3(3u * t + 1u, 3u * s, outer.y));
     claims.at[CLAIM * t + SPLIT] = p << 2 | 3u;
 }
 
@@ -62,8 +75,8 @@ void main() {
     uint h = place & PLACE;
     if (place != NONE) {
         point = waiting.at[list + i].x;
-        // Nobody else has this priority, and nobody without the least score has set it.
-        uint mine = priority(point);
+        // Nobody else has this number, and nobody without the least score has set it.
+        uint mine = precedence(point);
         won = claims.at[CLAIM * (h / 3u) + FIRST] == mine;
         if ((place & ON_EDGE) != 0u) {
             won = won && claims.at[CLAIM * places.at[2u * i + 1u] + FIRST] == mine;

@@ -1,12 +1,11 @@
-// Insertion, 4 of 4 of a round: the outer edges of what was split get their links, the edges around each new vertex go on
-// the list for flips, those of new ghost triangles on the list for the hull, and claims are cleared. The last workgroup
-// turns to the next round.
+// Insertion, 4 of 4 of a round: the outer edges of what was split get their links, the edges around new vertices go on the
+// list for flips, none twice, those of new ghost triangles on the list for the hull, and claims are cleared. The last
+// workgroup turns to the next round.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "insert.glsl"
 #include "edge_list.glsl"
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_ballot : require
+#include "workgroup_scan.glsl"
 
 layout(push_constant, std430) uniform Args {
     ReadU32 triangles;
@@ -25,6 +24,8 @@ layout(push_constant, std430) uniform Args {
     uint edge_limit;
     uint hull_limit;
 };
+
+shared uint place_of_group;
 
 // The name that half-edge g has after the round, and whether its triangle was split; who split it then sees to that side.
 uint renamed(uint g, out bool split) {
@@ -80,34 +81,38 @@ void main() {
             count = 4u;
         }
     }
-    for (uint k = 0u; k < count; k++) {
-        bool split;
-        uint other = renamed(links.at[outer[k]] & HALF_EDGE, split);
-        links.at[outer[k]] = other;
-        if (!split) {
-            links.at[other] = outer[k];
-        }
-    }
     // With few points left to insert, flips are left to stage 5.
     bool flips = words.at[NEXT] >= words.at[INSERTED] - words.at[INSERTED_BEFORE];
-    uint listed = flips ? count : 0u;
-    uint all = subgroupAdd(listed);
-    uint before = subgroupExclusiveAdd(listed);
-    uint base = 0u;
-    if (subgroupElect() && all > 0u) {
-        base = atomicAdd(edge_count.at[0], all);
-    }
-    base = subgroupBroadcastFirst(base) + before;
+    uint listed = 0u; // a bit for each
     for (uint k = 0u; k < count; k++) {
-        if (flips && base + k < edge_limit) {
-            edges.at[base + k] = outer[k];
+        bool split;
+        uint side = outer[k];
+        uint other = renamed(links.at[side] & HALF_EDGE, split);
+        links.at[side] = other;
+        if (!split) {
+            links.at[other] = side;
+        }
+        // An edge between two that were split is on the list by its lower side.
+        if (flips && (!split || side < other) && origin(triangles, side) != GHOST && destination(triangles, side) != GHOST) {
+            listed |= 1u << k;
         }
         if (is_ghost(triangles, parts[k])) {
             append_triangle(hull_edges, hull_count, hull_limit, parts[k]);
         }
     }
-
+    uint all;
+    uint next_place = sum_before(bitCount(listed), all);
+    if (gl_LocalInvocationIndex == 0u && all > 0u) {
+        place_of_group = atomicAdd(edge_count.at[0], all);
+    }
     barrier();
+    next_place += place_of_group;
+    for (uint k = 0u; k < count; k++) {
+        if ((listed >> k & 1u) != 0u && next_place < edge_limit) {
+            edges.at[next_place++] = outer[k];
+        }
+    }
+
     if (gl_LocalInvocationIndex != 0u) {
         return;
     }
@@ -117,7 +122,6 @@ void main() {
     }
     // Of this dispatch only this invocation is left.
     words.at[FINISHED] = 0u;
-    words.at[FLIPS] = uint(flips);
     words.at[INSERTED_BEFORE] = words.at[INSERTED];
     uint next = words.at[NEXT];
     uvec3 size = groups_of(next);

@@ -1,24 +1,15 @@
-// Insertion, between the hull and the flips of a round. If none are to be made, also because there was no insertion, the
-// list is emptied. A hull that is not closed by now ends it all.
+// Insertion, the end of a round: a hull that is not closed by now ends it all.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "insert.glsl"
 
 layout(push_constant, std430) uniform Args {
     ReadU32 reflex; // edges of the hull that are still reflex
-    U32 edge_count;
     U32 words;
 };
 
 void main() {
-    if (item_index() != 0u) {
-        return;
-    }
-    if (words.at[FLIPS] == 0u) {
-        edge_count.at[0] = 0u;
-    }
-    words.at[FLIPS] = 0u;
-    if (reflex.at[0] != 0u) {
+    if (item_index() == 0u && reflex.at[0] != 0u) {
         words.at[OPEN_HULL] = 1u;
         words.at[WAITING] = 0u;
         for (uint k = 0u; k < 3u; k++) {

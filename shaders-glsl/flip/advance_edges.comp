@@ -13,12 +13,9 @@ layout(push_constant, std430) uniform Args {
     U32 state;
     ReadU32 illegal; // of this round
     WriteU32 next_illegal;
-    MaybeWriteU32 also; // a list that all edges handed on are appended to
-    MaybeU32 also_count;
     U32 words;
     U32 report;
     uint stride;
-    uint also_limit;
     uint scope;
     uint parity; // of this round
 };
@@ -78,12 +75,6 @@ void main() {
         if (illegal_edge) {
             claim(state, stride, parity ^ 1u, lower, max(handed.side, handed.outer));
             next_illegal.at[place] = lower;
-        }
-        if (present(also)) {
-            place = place_in(U32(also_count), 0u, handed.some);
-            if (handed.some && place < also_limit) {
-                also.at[place] = lower;
-            }
         }
     }
     if (tests != 0u) {

@@ -13,12 +13,9 @@ layout(push_constant, std430) uniform Args {
     SharedU32 state;
     SharedU32 illegal_0; // of even rounds
     SharedU32 illegal_1;
-    MaybeWriteU32 also; // a list that all edges handed on are appended to
-    MaybeU32 also_count;
     SharedU32 words;
     SharedU32 report;
     uint stride;
-    uint also_limit;
     uint scope;
     uint least; // so many illegal edges are left to other kernels, four times as many once it has begun
     uint most; // rounds
@@ -132,12 +129,6 @@ void main() {
                     near_upper[(parity ^ 1u) * NEAR + place] = upper;
                 } else {
                     next_illegal.at[place] = lower;
-                }
-            }
-            if (present(also) && handed.some) {
-                uint place = atomicAdd(also_count.at[0], 1u);
-                if (place < also_limit) {
-                    also.at[place] = min(handed.side, handed.outer);
                 }
             }
         }

@@ -1,5 +1,5 @@
-// Steps 1 and 2 of a round over a list, in which edges may repeat: each is tested once, and illegal ones claim their two
-// triangles.
+// Steps 1 and 2 of a round over a list: each edge is tested, and illegal ones claim their two triangles. Where edges may
+// repeat, and triangles may be free, `listed` sees to it that each is tested once.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "appending.glsl"
@@ -11,7 +11,7 @@ layout(push_constant, std430) uniform Args {
     ReadPoints positions;
     U32 edges;
     ReadU32 edge_count;
-    U32 listed; // a bit for each half-edge, all zero
+    MaybeU32 listed; // a bit for each half-edge, all zero; without, no edge is twice on the list
     U32 state;
     WriteU32 illegal;
     U32 words;
@@ -57,8 +57,16 @@ void main() {
         uint g = 0u;
         if (i < count) {
             h = edges.at[i];
-            if (take(i, h)) {
+            if (!present(listed) || take(i, h)) {
                 g = links.at[h];
+                if ((g & HALF_EDGE) < h) {
+                    // The lower side comes first.
+                    uint mark = g & CONSTRAINED;
+                    g &= HALF_EDGE;
+                    uint lower = g;
+                    g = h | mark;
+                    h = lower;
+                }
                 uint b = origin(triangles, h);
                 uint c = destination(triangles, h);
                 if (scope == SCOPE_ALL || b == GHOST || c == GHOST) {

@@ -1,5 +1,5 @@
 // Lists of edges to be tested in the next flip round (`polder_flip::gpu::EdgeList`): half-edges in any order, from either
-// side and repeatedly; also of triangles that are freed later.
+// side; whether edges may repeat, is for the round to say.
 #ifndef EDGE_LIST_GLSL
 #define EDGE_LIST_GLSL
 

@@ -113,7 +113,7 @@ fn a_mesh_of_free_slots_alone() {
     assert_flipped(&mut gpu, &stages[0], "free", &GhostMesh::with_slots(40), &[DVec2::ZERO]);
 }
 
-/// Lists as stage 4 makes them: from both sides, repeatedly, free slots among them.
+/// Lists as stage 4 makes them: from either side, no edge twice.
 #[test]
 fn rounds_one_by_one() {
     let (mut gpu, stages) = stages();
@@ -126,17 +126,20 @@ fn rounds_one_by_one() {
         let on = Uploaded::new(&mut gpu, stage, &expected, pslg.points());
         let mut edges: Vec<u32> =
             (0..3 * expected.slots() as u32).filter(|&h| !priority(h ^ 3).is_multiple_of(3)).collect();
-        edges.extend(edges.clone().iter().step_by(4));
+        edges.retain(|&h| expected.twin(h) != NONE);
+        edges.sort_by_key(|&h| (h.min(expected.twin(h)), priority(h)));
+        edges.dedup_by_key(|h| (*h).min(expected.twin(*h)));
         edges.sort_by_key(|&h| priority(h ^ 8));
         let list = EdgeList::new(&gpu.device, edges.len().max(3 * expected.slots())).unwrap();
-        gpu.engine.upload(list.count(), &[edges.len() as u32, 0, 0, 0, 0, 0, 0, 0]).unwrap();
-        gpu.engine.upload(list.edges().slice(0..edges.len()).unwrap(), &edges).unwrap();
         let mut active = Active::new();
         edges.iter().for_each(|&h| active.push(h));
         let mut recording = gpu.recording();
         stage.record_start(&mut recording, &on.buffers);
         gpu.run(&recording);
         for _ in 0..4 {
+            let edges = sorted(active.half_edges().iter().map(|&h| h.min(expected.twin(h))).collect());
+            gpu.engine.upload(list.count(), &[edges.len() as u32, 0, 0, 0, 0, 0, 0, 0]).unwrap();
+            gpu.engine.upload(list.edges().slice(0..edges.len()).unwrap(), &edges).unwrap();
             let mut recording = gpu.recording();
             on.tally.record_clear(&mut recording);
             stage.record_round(&mut recording, &on.mesh, &on.buffers, &list, &on.tally).unwrap();
@@ -147,11 +150,7 @@ fn rounds_one_by_one() {
             let tests = active.tests() - tests;
             assert_eq!(report, FlipReport { rounds, flips, tests }, "{name}");
             assert!(on.holds(&mut gpu, &expected), "{name}");
-            let count = gpu.fetch(list.count())[0] as usize;
-            let found = gpu.fetch(list.edges())[..count].to_vec();
-            let wanted = sorted(active.half_edges().iter().map(|&h| h.min(expected.twin(h))).collect());
-            assert_eq!(count, wanted.len(), "{name}: an edge twice");
-            assert_eq!(sorted(found), wanted, "{name}");
+            assert_eq!(gpu.fetch(list.count())[0], 0, "{name}: the list is emptied");
         }
     }
 }
@@ -171,36 +170,22 @@ fn hulls_are_closed() {
         let start = reference::chain(&order);
         let mut expected = start.clone();
         let expected_report = reference::close_hull(&mut expected, pslg.points()).unwrap();
-        let mut around = Vec::new();
-        {
-            let mut mesh = start.clone();
-            let mut active = Active::hull(&mesh);
-            while !active.is_empty() {
-                reference::flip_round(&mut mesh, pslg.points(), &mut active);
-                around.extend(active.half_edges().iter().map(|&h| h.min(mesh.twin(h))));
-            }
-        }
         // Over all ghost edges, and over a list of them.
         for given in [false, true] {
             let on = Uploaded::new(&mut gpu, stage, &start, pslg.points());
             let edges: Vec<u32> = (0..3 * start.slots() as u32).rev().collect();
             let list = EdgeList::new(&gpu.device, edges.len()).unwrap();
-            let also = EdgeList::new(&gpu.device, 20 * edges.len()).unwrap();
             gpu.engine.upload(list.count(), &[edges.len() as u32, 0, 0, 0, 0, 0, 0, 0]).unwrap();
             gpu.engine.upload(list.edges(), &edges).unwrap();
             let mut recording = gpu.recording();
             stage.record_start(&mut recording, &on.buffers);
             on.tally.record_clear(&mut recording);
-            also.record_clear(&mut recording);
-            let (list, also) = (given.then_some(&list), Some(&also));
-            stage.record_close_hull(&mut recording, &on.mesh, &on.buffers, list, also, &on.tally).unwrap();
+            let list = given.then_some((&list, 5 * (turn % 2)));
+            stage.record_close_hull(&mut recording, &on.mesh, &on.buffers, list, &on.tally).unwrap();
             let read = on.tally.read(&mut recording);
             let report = gpu.run(&recording);
             assert_eq!((read.report(&report), report.waits), (expected_report, 1), "{name}");
             assert!(on.holds(&mut gpu, &expected), "{name}");
-            let count = gpu.fetch(also.unwrap().count())[0] as usize;
-            let found = gpu.fetch(also.unwrap().edges())[..count].to_vec();
-            assert_eq!(sorted(found), sorted(around.clone()), "{name}");
         }
     }
 }

@@ -101,7 +101,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "99525cd199fca0ba5dc6e9f38ae0ba874a5de3ee2cfe01c72153a3cd1d031b04";
+    source "55ae45680d18463dec5bd4c172d615757d338e77dff45ee32061990f9679ba49";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -125,13 +125,13 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "fcae7be88cc596f2986cbe99db2e4c0cfe52e658aec0b76f608b9cd587190b0a";
+    source "34da3553f2be02801b543f0fdb6875edcc918f344d6cf421eca2c613be9e3b7b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
 define_kernel! {
     /// Insertion, 2 of 4 of a round: the second step of the claims. Of the points with the least score of a triangle, the one
-    /// with the least priority gets it. Two words of 32 bits in two steps, since atomics on 64 bits are optional. For a point on
+    /// with the least precedence gets it. Two words of 32 bits in two steps, since atomics on 64 bits are optional. For a point on
     /// an edge the second of its triangles takes the place of its score, which has served: links are about to change.
     InsertClaim(InsertClaimArgs) = "insert_claim";
     buffers {
@@ -148,7 +148,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "977d8325ec5efe91aec89139b6bf1c1d7adb985d4d68fd0330be2ca691d3906c";
+    source "350b5ac2f7a60effae01825a4cfd541926d66fa28294eacbfb8a882caf6a9e01";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -173,7 +173,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "dbb205ceb1f4e86ed933b4c0dff0049d53ab7ddcf9e7e9ea1564710f458e6516";
+    source "892ea1c9d252fb2506bd528c8a851d3be7b54d139c43a1076b61a583af232cad";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -200,7 +200,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "872f1a3a4265f8cea3da35908bbcd44c1e56f46ad6645f2e748d5cad8e4d0a1a";
+    source "243c94dfe7fe343a363a4f921d24a87de59fbf059a2d2dc4ceec1c52acb14d5a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -222,7 +222,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "15a1e324342448385f04b3d5219b3f09e61f4bc6daa929fac476e27c11d025e0";
+    source "c7f44fdebab872d4b323cd44145bd194182bcca0010cb2ade9f68da55ff18160";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -258,14 +258,14 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "aeb3b87b0c8ebcbc702891bf5ceb8e5b34419a76b6743f30a6e260d34c4470ad";
+    source "319e9b419c9bec79bff4c901973a2f05fbb4d4aa8979116faf1a7c7c9cc82fc5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
 define_kernel! {
-    /// Insertion, 4 of 4 of a round: the outer edges of what was split get their links, the edges around each new vertex go on
-    /// the list for flips, those of new ghost triangles on the list for the hull, and claims are cleared. The last workgroup
-    /// turns to the next round.
+    /// Insertion, 4 of 4 of a round: the outer edges of what was split get their links, the edges around new vertices go on the
+    /// list for flips, none twice, those of new ghost triangles on the list for the hull, and claims are cleared. The last
+    /// workgroup turns to the next round.
     InsertRelink(InsertRelinkArgs) = "insert_relink";
     buffers {
         0: read triangles: View<'a, u32>,
@@ -289,27 +289,24 @@ define_kernel! {
     argument_bytes 108;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot",
-        "PhysicalStorageBufferAddresses", "Shader"];
-    source "7b0fc5dd811c780809513cfc3342f89859410dff8b8e27cd7a32f1dbeaa94681";
+    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
+    source "58c5824d3e06917d64a6a70dfedc36e4dc73daf287c4e534f10962acf4784798";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
 define_kernel! {
-    /// Insertion, between the hull and the flips of a round. If none are to be made, also because there was no insertion, the
-    /// list is emptied. A hull that is not closed by now ends it all.
+    /// Insertion, the end of a round: a hull that is not closed by now ends it all.
     InsertTurn(InsertTurnArgs) = "insert_turn";
     buffers {
         0: read reflex: View<'a, u32>,
-        8: both edge_count: View<'a, u32>,
-        16: both words: View<'a, u32>,
+        8: both words: View<'a, u32>,
     }
     values {}
-    argument_bytes 24;
+    argument_bytes 16;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "f82b82cade64d843e2971c983d8550de3f06e07d36084e7a136faf9e4a04ee01";
+    source "a628a369f7d3a4415fcbecb20a7b5385180ea71f75382a88b15bbd2f920d9e50";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -334,7 +331,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "250eae61d588c6b0fe9908eba03fb83900fe2de411c550eeaaf6a2aa36bb1f60";
+    source "affe7c63fe51fc44224c50c10565baf2583b14468cd59b817280cc3ed0bbdd4d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -14,23 +14,20 @@ define_kernel! {
         24: both state: View<'a, u32>,
         32: read illegal: View<'a, u32>,
         40: written next_illegal: View<'a, u32>,
-        48: maybe_written also: Option<View<'a, u32>>,
-        56: maybe_both also_count: Option<View<'a, u32>>,
-        64: both words: View<'a, u32>,
-        72: both report: View<'a, u32>,
+        48: both words: View<'a, u32>,
+        56: both report: View<'a, u32>,
     }
     values {
-        80: stride: u32,
-        84: also_limit: u32,
-        88: scope: u32,
-        92: parity: u32,
+        64: stride: u32,
+        68: scope: u32,
+        72: parity: u32,
     }
-    argument_bytes 96;
+    argument_bytes 76;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "d95f309d42c309d18d8432d1c44735794f611f84dab5138f460aebb7dd075349";
+    source "e08898e7813cbfd390b8bd84eb2ea0f26c2e8f5bdbabc0fdb981bb57f8fd477e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -75,24 +72,21 @@ define_kernel! {
         24: both state: View<'a, u32>,
         32: both illegal_0: View<'a, u32>,
         40: both illegal_1: View<'a, u32>,
-        48: maybe_written also: Option<View<'a, u32>>,
-        56: maybe_both also_count: Option<View<'a, u32>>,
-        64: both words: View<'a, u32>,
-        72: both report: View<'a, u32>,
+        48: both words: View<'a, u32>,
+        56: both report: View<'a, u32>,
     }
     values {
-        80: stride: u32,
-        84: also_limit: u32,
-        88: scope: u32,
-        92: least: u32,
-        96: most: u32,
-        100: most_flips: u32,
+        64: stride: u32,
+        68: scope: u32,
+        72: least: u32,
+        76: most: u32,
+        80: most_flips: u32,
     }
-    argument_bytes 104;
+    argument_bytes 84;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8ccfdcf274d2775ac8e39659bf66c94cebd61d37e59f7d0c77b3f6a072f4b18b";
+    source "aee7a280e12f3c33d3d8b503c541f9705b7a3eb34b66e33fcb0f2f0c9ce658eb";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -136,33 +130,30 @@ define_kernel! {
 }
 
 define_kernel! {
-    /// Step 3 of a round, second half, and step 4: renews the links around all flips, gives claimed triangles back, and lists the
-    /// edges of the next round: those around flips, and illegal ones next to no flip. No edge is listed twice.
+    /// Step 3 of a round, second half: renews the links around all flips, and gives claimed triangles back. The edges of a next
+    /// round are nobody's concern.
     RelinkEdges(RelinkEdgesArgs) = "relink_edges";
     buffers {
         0: both links: View<'a, u32>,
         8: both state: View<'a, u32>,
         16: read illegal: View<'a, u32>,
-        24: written edges: View<'a, u32>,
-        32: both edge_count: View<'a, u32>,
-        40: both words: View<'a, u32>,
+        24: both words: View<'a, u32>,
     }
     values {
-        48: stride: u32,
-        52: limit: u32,
-        56: parity: u32,
+        32: stride: u32,
+        36: parity: u32,
     }
-    argument_bytes 60;
+    argument_bytes 40;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "0efb449b1dfbc449f8560c2f207e623a3cae74bfc2c5c3be0bf91d8ee2c05cfc";
+    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
+    source "a748bd53e874b9a9f7c2d081a729b4311e2036e780c52d6c0e2cea56b3af9a7c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
 define_kernel! {
-    /// Steps 1 and 2 of a round over a list, in which edges may repeat: each is tested once, and illegal ones claim their two
-    /// triangles.
+    /// Steps 1 and 2 of a round over a list: each edge is tested, and illegal ones claim their two triangles. Where edges may
+    /// repeat, and triangles may be free, `listed` sees to it that each is tested once.
     TestEdges(TestEdgesArgs) = "test_edges" and "test_edges.integers";
     buffers {
         0: read triangles: View<'a, u32>,
@@ -170,7 +161,7 @@ define_kernel! {
         16: read positions: View<'a, [u32; 4]>,
         24: both edges: View<'a, u32>,
         32: read edge_count: View<'a, u32>,
-        40: both listed: View<'a, u32>,
+        40: maybe_both listed: Option<View<'a, u32>>,
         48: both state: View<'a, u32>,
         56: written illegal: View<'a, u32>,
         64: both words: View<'a, u32>,
@@ -187,7 +178,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "047d806682d79fac58d7f0aed65b8a4a3329e84d38444046bb5874cb3ac9fa2c";
+    source "b20eb40008cd0f7c9aec88b1b73d2f84ed4b503c61f66bf51b510306ab53bdd4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

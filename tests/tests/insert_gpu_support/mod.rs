@@ -22,7 +22,6 @@ pub(crate) const FINISHED: usize = 8;
 pub(crate) const CENTER: usize = 9;
 pub(crate) const SITES: usize = 13;
 pub(crate) const CHAIN: usize = 14;
-pub(crate) const FLIPS: usize = 15;
 pub(crate) const INSERTED: usize = 16;
 pub(crate) const DUPLICATES: usize = 17;
 pub(crate) const LOST: usize = 18;

@@ -4,7 +4,7 @@
 //! triangles gets some: a chain is joined by the point off its line that has the least priority, in place; an empty mesh is
 //! given the chain of the first and last of all points before. If all points lie on one line, the stage says so and leaves
 //! them to the host. A round is four kernels here,
-//! then ghost flips and one round of flips, which `polder-flip` records:
+//! then one round of flips, and ghost flips, which `polder-flip` records:
 //!
 //! 1. *Locate.* One invocation a point walks to its container, scores the point and claims by score, by atomics on [`u32`]
 //!    alone.
@@ -78,11 +78,9 @@ pub struct Buffers {
     flips: Tally,
 }
 
-/// Room for the edges of a round of flips. There are `n` points, `v` of them vertices before the round; it inserts `w`, and
-/// as many still wait. The last round of flips has handed on three edges a vertex at most, and each winner brings along three
-/// or four: less than `3 n` together. The rest is for ghost flips.
+/// Room for the edges of a round of flips: each once.
 fn edges_of(slots: usize) -> usize {
-    2 * slots
+    3 * slots.div_ceil(2)
 }
 
 impl Buffers {
@@ -98,11 +96,6 @@ impl Buffers {
     /// For each point the vertex that it is or equals.
     pub fn vertex_of(&self) -> View<'_, u32> {
         self.vertex_of.view()
-    }
-
-    /// The edges around what the last flips changed.
-    pub fn edges(&self) -> &EdgeList {
-        &self.edges
     }
 
     fn word(&self, word: Word, count: usize) -> Result<View<'_, u32>, Error> {
@@ -395,9 +388,11 @@ impl Stage {
             hull_limit: hull.limit(),
         };
         round.dispatch_indirect(&self.relink, groups, &arguments);
-        flips.0.record_close_hull(round, mesh, flips.1, Some(hull), Some(&buffers.edges), &buffers.hull)?;
-        let arguments = InsertTurnArgs { reflex: flips.1.pending()?, edge_count: buffers.edges.count(), words };
+        flips.0.record_round(round, mesh, flips.1, &buffers.edges, &buffers.flips)?;
+        // A hull is closed often, and little is to be done.
+        flips.0.record_close_hull(round, mesh, flips.1, Some((hull, 0)), &buffers.hull)?;
+        let arguments = InsertTurnArgs { reflex: flips.1.pending()?, words };
         round.dispatch(&self.turn, [1, 1, 1], &arguments);
-        flips.0.record_round(round, mesh, flips.1, &buffers.edges, &buffers.flips)
+        Ok(())
     }
 }

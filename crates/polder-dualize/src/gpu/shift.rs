@@ -39,6 +39,8 @@ pub(super) const UNPIN_ROUNDS: u32 = 16;
 pub(super) const OUT_ROUNDS: u32 = 4;
 /// Workgroups of a wide kernel, whose invocations stride over their items.
 const WIDE: u32 = 2112;
+/// Wide rounds after the first that close the hull.
+const HULL_WIDE: usize = 5;
 /// Stars that are cut by workgroups at a time.
 const STARS: u32 = 1056;
 const WIDE_ON_CPU: u32 = 16;
@@ -155,7 +157,7 @@ impl Stage {
     ) -> Result<Read, Error> {
         let hull = flips.buffers.list();
         self.record_pin(recording, input, mesh, hull, buffers)?;
-        flips.stage.record_close_hull(recording, mesh, flips.buffers, Some(hull), None, flips.tally)?;
+        flips.stage.record_close_hull(recording, mesh, flips.buffers, Some((hull, HULL_WIDE)), flips.tally)?;
         let unclosed = recording.read(flips.buffers.pending()?);
         self.record_take_out(recording, input, mesh, buffers)?;
         Ok(buffers.read(recording, unclosed))

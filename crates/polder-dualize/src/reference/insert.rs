@@ -9,15 +9,15 @@
 //!    first, since they need two triangles; in a triangle chance decides, outside it is the point highest above the hull.
 //! 3. A point that got all it claimed is inserted. The two triangles more that there are then go to the two slots that the
 //!    point brings along: so each slot is known beforehand, and nobody has to count.
-//! 4. Ghost flips until the hull is convex again.
-//! 5. If at least as many points still wait as were inserted, one round of flips, over what is new and what the last
-//!    round of flips left. The other points keep their container as the place from which the next walk starts.
+//! 4. If at least as many points still wait as were inserted, one round of flips, of edges around new vertices alone.
+//! 5. Ghost flips until the hull is convex again. The other points keep their container as the place from which the next
+//!    walk starts.
 //!
 //! The least key of all always gets what it claims, so each round inserts a point. Where many points crowd in one
 //! triangle, a random one leaves a fraction of them in each part, so that rounds go with the logarithm of their number;
-//! and the flip rounds keep the parts from becoming slivers: without them points in a cluster flip twice as often later and
-//! need a fifth more rounds. Flipping to the end in each round gains nothing more, nor does flipping when few points wait:
-//! these flips are then made in stage 5, which has to test all edges anyway.
+//! and the flip rounds keep the parts from becoming slivers. Of the edges around new vertices more than half are illegal;
+//! those around the flips are mostly not, and are left to stage 5, which has to test all edges anyway: testing them as well,
+//! twice as many, saved no flip. Nor does flipping to the end in each round, or when few points wait.
 //!
 //! A mesh without finite triangles is given some first (module `bootstrap`).
 //!
@@ -160,21 +160,20 @@ impl Round<'_> {
         edges.iter().for_each(|&h| self.active.push(h));
 
         // Steps 4 and 5.
-        let mut hull = Active::hull(&GhostMesh::default());
-        ghosts.iter().for_each(|&h| hull.push(h));
-        out.hull += self.close(&mut out.mesh, hull)?;
-        if !flips {
-            self.active = Active::new();
-        } else if !self.active.is_empty() {
+        if !self.active.is_empty() {
             let tests = self.active.tests();
             let flips = flip_round(&mut out.mesh, self.positions, &mut self.active);
             out.flips += FlipReport { rounds: 1, flips, tests: self.active.tests() - tests };
+            self.active.clear();
         }
+        let mut hull = Active::hull(&GhostMesh::default());
+        ghosts.iter().for_each(|&h| hull.push(h));
+        out.hull += self.close(&mut out.mesh, hull)?;
         Ok(later)
     }
 
-    /// Step 4. The edges around the ghost flips are new as well.
-    fn close(&mut self, mesh: &mut GhostMesh, mut hull: Active) -> Result<FlipReport, DualizeError> {
+    /// Step 5.
+    fn close(&self, mesh: &mut GhostMesh, mut hull: Active) -> Result<FlipReport, DualizeError> {
         let mut report = FlipReport::default();
         let bound = round_bound(mesh.slots());
         while !hull.is_empty() {
@@ -183,7 +182,6 @@ impl Round<'_> {
             }
             report.rounds += 1;
             report.flips += flip_round(mesh, self.positions, &mut hull);
-            hull.half_edges().iter().for_each(|&h| self.active.push(h));
         }
         report.tests = hull.tests();
         Ok(report)

@@ -1,8 +1,7 @@
 //! Who goes first where several points want the same container.
 //!
 //! One 64-bit number a point, the least wins: first a bit that is clear for a point on an edge, then 31 bits that say
-//! how well the point suits, the *score*, then 32 bits of [`priority`](polder_flip::priority), so that two points never
-//! tie.
+//! how well the point suits, the *score*, then 32 bits of [`precedence`], so that two points never tie.
 //!
 //! - In a triangle all points suit alike, so that chance decides. Whatever the points look like, each part of the split
 //!   triangle is then expected to get a fraction of them. Every rule that looks at the triangle has its family of
@@ -20,6 +19,18 @@
 //! after 31 bits in all: such numbers are ordered as what they stand for, whatever their powers of two were.
 
 use glam::DVec2;
+
+/// Who goes first where scores do not tell: chance, in layers. Of every two numbers `2 k` and `2 k + 1` one is in the lower half,
+/// of every four from `4 k` one in the lowest quarter, and so on. Points that crowd have numbers in a row, often along a line:
+/// so the first of them to go are spread evenly, and those of the next layer lie between them, one or two to a triangle. A
+/// bijection: the bits reversed, each then changed by those below it.
+pub(super) fn precedence(point: u32) -> u32 {
+    let mut x = point.reverse_bits().wrapping_add(0x5bd1_e995);
+    for factor in [0x6c50_b47c_u32, 0xb82f_1e52, 0xc7af_e638, 0x8d22_f6e6] {
+        x ^= x.wrapping_mul(factor);
+    }
+    x
+}
 
 /// The score of every point strictly inside a triangle; of points on an edge it is less, outside the hull not less.
 pub(crate) const INSIDE: u32 = 1 << 31;
@@ -85,6 +96,21 @@ fn fixed(x: f64, top: i32) -> i64 {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "tests")]
     use super::*;
+
+    #[test]
+    fn precedence_is_a_bijection_in_layers() {
+        for layer in 0..16_u32 {
+            for k in (0..1 << 16).step_by(1 << layer) {
+                let mut parts: Vec<u32> = (0..1 << layer).map(|i| precedence(k + i) >> (32 - layer).min(31)).collect();
+                parts.sort_unstable();
+                assert!(layer == 0 || parts.into_iter().eq(0..1 << layer), "{layer} {k}");
+            }
+        }
+        let mut all: Vec<u32> = (0..1 << 20).map(|i: u32| precedence(i.wrapping_mul(4099))).collect();
+        all.sort_unstable();
+        all.dedup();
+        assert_eq!(all.len(), 1 << 20);
+    }
 
     #[test]
     fn fixed_keeps_every_bit_near_the_top() {

@@ -10,8 +10,7 @@ const WORDS: usize = 8;
 const STEERING: usize = 20;
 const PENDING: usize = 16;
 
-/// Edges to be tested in the next flip round: half-edges in any order, from either side and repeatedly, also of triangles
-/// that are freed later. Kernels append by `edge_list.glsl`.
+/// Edges to be tested in the next flip round: half-edges in any order, from either side. Kernels append by `edge_list.glsl`.
 #[derive(Debug)]
 pub struct EdgeList {
     edges: Buffer<u32>,
@@ -159,8 +158,8 @@ impl Buffers {
         })
     }
 
-    /// A list that may be given to [`Stage::record_round`](super::Stage::record_round) and
-    /// [`Stage::record_close_hull`](super::Stage::record_close_hull). Others than these two lose what is in it.
+    /// A list that may be given to [`Stage::record_close_hull`](super::Stage::record_close_hull). Others than that and
+    /// [`Stage::record_round`](super::Stage::record_round) lose what is in it.
     pub fn list(&self) -> &EdgeList {
         &self.list
     }

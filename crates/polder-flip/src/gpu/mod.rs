@@ -17,8 +17,9 @@
 //! illegal, whole rounds run inside one workgroup, with their list in shared memory. Which kernel makes a round cannot be
 //! told from the result.
 //!
-//! [`Stage::record_round`] makes a single round over a list to which other kernels append in any order, also repeatedly
-//! (`edge_list.glsl`); a bit for each half-edge sorts out repetitions. [`Stage::record_close_hull`] makes ghost flips alone.
+//! [`Stage::record_round`] makes a single round over a list to which other kernels append in any order (`edge_list.glsl`),
+//! each edge once. [`Stage::record_close_hull`] makes ghost flips alone; in its list edges may repeat, and a bit for each
+//! half-edge sorts that out.
 //!
 //! Departures from the paper, beside those of the reference: rounds are not separated by the host; a claim is the minimum
 //! of a hash; links are renewed from stamps, not through an array of messages; what is listed is edges.

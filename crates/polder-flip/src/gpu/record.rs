@@ -15,8 +15,6 @@ const WIDE: usize = 10;
 const FEW: u32 = 256;
 /// Wide rounds of closing a hull: an even number.
 const HULL_WIDE: usize = 2;
-/// Of closing a whole hull from a list: wide rounds after the first.
-const LONG_HULL_WIDE: usize = 5;
 
 /// Which edges may be flipped.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -30,8 +28,6 @@ enum Scope {
 struct Round<'a> {
     mesh: &'a Mesh,
     buffers: &'a Buffers,
-    /// A list that edges handed on are appended to.
-    also: Option<&'a EdgeList>,
     tally: &'a Tally,
     scope: Scope,
 }
@@ -60,7 +56,7 @@ impl Stage {
         buffers.fit(mesh, "flip")?;
         recording.fill(buffers.state.view(), NONE);
         recording.fill(buffers.words.view(), 0);
-        let round = Round { mesh, buffers, also: None, tally, scope: Scope::All };
+        let round = Round { mesh, buffers, tally, scope: Scope::All };
         self.test_mesh(recording, round);
         let bound = u32::try_from(round_bound(mesh.capacity())).unwrap_or(u32::MAX);
         recording.repeat_ahead("flip", buffers.pending()?, bound, 1, 3, |body| {
@@ -72,8 +68,9 @@ impl Stage {
         Ok(())
     }
 
-    /// Exactly one round over a list, as [`reference::flip_round`](crate::reference::flip_round) does; the list then holds
-    /// the edges of the next round. Adds to the tally, a round only if the list was not empty.
+    /// Exactly one round over a list in which no edge is twice, and none that was freed, as
+    /// [`reference::flip_round`](crate::reference::flip_round) does, but that nothing remembers which edges the next round
+    /// were to test; the list is emptied. Adds to the tally, a round only if the list was not empty.
     ///
     /// # Errors
     ///
@@ -87,26 +84,23 @@ impl Stage {
         tally: &Tally,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "flip round")?;
-        let round = Round { mesh, buffers, also: None, tally, scope: Scope::All };
-        self.test_list(recording, round, list);
-        self.flip(recording, round, Some(list), 0, 0);
+        let round = Round { mesh, buffers, tally, scope: Scope::All };
+        self.test_list(recording, round, list, false);
+        self.flip(recording, round, Some((list, false)), 0, 0);
         let arguments = RelinkEdgesArgs {
             links: mesh.twins(),
             state: buffers.state.view(),
             stride: buffers.slots as u32,
             illegal: buffers.illegal(0),
-            edges: list.edges(),
-            edge_count: list.count(),
             words: buffers.words.view(),
-            limit: list.limit(),
             parity: 0,
         };
         recording.dispatch(&self.relink_edges, [self.pace.groups, 1, 1], &arguments);
         Ok(())
     }
 
-    /// Ghost flips alone until the hull is nowhere strictly reflex, over a list, which is emptied, or over all ghost edges.
-    /// The edges that each round hands on are appended to `also`.
+    /// Ghost flips alone until the hull is nowhere strictly reflex, over a list, which is emptied, or over all ghost edges. A
+    /// list comes with the number of wide rounds after its first: few where little is to be done. In it edges may repeat.
     ///
     /// The host waits for nothing. Afterwards [`Buffers::pending`] is zero, but for a hull that needs more rounds than may be
     /// taken without a look.
@@ -119,19 +113,16 @@ impl Stage {
         recording: &mut Recording,
         mesh: &Mesh,
         buffers: &Buffers,
-        list: Option<&EdgeList>,
-        also: Option<&EdgeList>,
+        list: Option<(&EdgeList, usize)>,
         tally: &Tally,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "close hull")?;
-        let round = Round { mesh, buffers, also, tally, scope: Scope::Hull };
+        let round = Round { mesh, buffers, tally, scope: Scope::Hull };
         match list {
-            Some(list) => {
-                self.test_list(recording, round, list);
-                self.flip(recording, round, Some(list), 0, 0);
+            Some((list, wide)) => {
+                self.test_list(recording, round, list, true);
+                self.flip(recording, round, Some((list, true)), 0, 0);
                 self.hand_on(recording, round, 0);
-                // Between insertions a hull is closed often, and little is to be done.
-                let wide = if also.is_none() { LONG_HULL_WIDE } else { 0 };
                 for turn in 1..=wide {
                     self.advance(recording, round, turn % 2, FEW);
                 }
@@ -157,7 +148,7 @@ impl Stage {
 
     /// Every edge, and the claims of the first round.
     fn test_mesh(&self, recording: &mut Recording, round: Round<'_>) {
-        let Round { mesh, buffers, tally, scope, .. } = round;
+        let Round { mesh, buffers, tally, scope } = round;
         let arguments = TestMeshArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
@@ -174,16 +165,16 @@ impl Stage {
         recording.dispatch(&self.test_mesh, groups_for(mesh.capacity(), WORKGROUP), &arguments);
     }
 
-    /// A list, and the claims of a round over it.
-    fn test_list(&self, recording: &mut Recording, round: Round<'_>, list: &EdgeList) {
-        let Round { mesh, buffers, tally, scope, .. } = round;
+    /// A list, in which edges may repeat, and the claims of a round over it.
+    fn test_list(&self, recording: &mut Recording, round: Round<'_>, list: &EdgeList, repeats: bool) {
+        let Round { mesh, buffers, tally, scope } = round;
         let arguments = TestEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
             edges: list.edges(),
             edge_count: list.count(),
-            listed: buffers.listed.view(),
+            listed: repeats.then(|| buffers.listed.view()),
             state: buffers.state.view(),
             stride: buffers.slots as u32,
             illegal: buffers.illegal(0),
@@ -196,8 +187,17 @@ impl Stage {
         recording.dispatch(&self.test_edges, [self.pace.groups, 1, 1], &arguments);
     }
 
-    fn flip(&self, recording: &mut Recording, round: Round<'_>, list: Option<&EdgeList>, parity: usize, least: u32) {
+    fn flip(
+        &self,
+        recording: &mut Recording,
+        round: Round<'_>,
+        list: Option<(&EdgeList, bool)>,
+        parity: usize,
+        least: u32,
+    ) {
         let Round { mesh, buffers, tally, .. } = round;
+        let repeats = list.is_some_and(|(_, repeats)| repeats);
+        let list = list.map(|(list, _)| list);
         let arguments = FlipEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
@@ -206,7 +206,7 @@ impl Stage {
             illegal: buffers.illegal(parity),
             edges: list.map(EdgeList::edges),
             edge_count: list.map(EdgeList::count),
-            listed: list.map(|_| buffers.listed.view()),
+            listed: repeats.then(|| buffers.listed.view()),
             words: buffers.words.view(),
             report: tally.words(),
             limit: list.map_or(0, EdgeList::limit),
@@ -217,7 +217,7 @@ impl Stage {
     }
 
     fn hand_on(&self, recording: &mut Recording, round: Round<'_>, parity: usize) {
-        let Round { mesh, buffers, also, tally, scope } = round;
+        let Round { mesh, buffers, tally, scope } = round;
         let arguments = AdvanceEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
@@ -226,11 +226,8 @@ impl Stage {
             stride: buffers.slots as u32,
             illegal: buffers.illegal(parity),
             next_illegal: buffers.illegal(1 - parity),
-            also: also.map(EdgeList::edges),
-            also_count: also.map(EdgeList::count),
             words: buffers.words.view(),
             report: tally.words(),
-            also_limit: also.map_or(0, EdgeList::limit),
             scope: scope as u32,
             parity: parity as u32,
         };
@@ -238,7 +235,7 @@ impl Stage {
     }
 
     fn tail(&self, recording: &mut Recording, round: Round<'_>, least: u32, most: u32) {
-        let Round { mesh, buffers, also, tally, scope } = round;
+        let Round { mesh, buffers, tally, scope } = round;
         let arguments = FlipTailArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
@@ -247,11 +244,8 @@ impl Stage {
             stride: buffers.slots as u32,
             illegal_0: buffers.illegal(0),
             illegal_1: buffers.illegal(1),
-            also: also.map(EdgeList::edges),
-            also_count: also.map(EdgeList::count),
             words: buffers.words.view(),
             report: tally.words(),
-            also_limit: also.map_or(0, EdgeList::limit),
             scope: scope as u32,
             least,
             most,

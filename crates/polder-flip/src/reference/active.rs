@@ -76,6 +76,11 @@ impl Active {
         self.candidates.extend([h, h + 1, h + 2]);
     }
 
+    /// Drops all that was added.
+    pub fn clear(&mut self) {
+        self.candidates.clear();
+    }
+
     /// The half-edges added, in no particular order.
     pub fn half_edges(&self) -> &[u32] {
         &self.candidates

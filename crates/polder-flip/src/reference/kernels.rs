@@ -130,18 +130,17 @@ pub fn test_mesh(mesh: &GhostMesh, positions: &[DVec2], hull_alone: bool, scratc
     test_edges(mesh, positions, &edges, hull_alone, scratch)
 }
 
-/// Step 3, second half, and steps 1 and 2 of the next round: the edges handed on, those of them that are illegal, and the
-/// number of tests.
+/// Step 3, second half, and steps 1 and 2 of the next round: the illegal ones of the edges around the flips, and of those
+/// left, and the number of tests.
 pub fn advance_edges(
     mesh: &mut GhostMesh,
     positions: &[DVec2],
     illegal: &[u32],
     hull_alone: bool,
     scratch: &mut Scratch,
-) -> (Vec<u32>, Vec<u32>, u64) {
+) -> (Vec<u32>, u64) {
     let handed = relink_edges(mesh, scratch, illegal);
-    let (next, tests) = test_edges(mesh, positions, &handed, hull_alone, scratch);
-    (handed, next, tests)
+    test_edges(mesh, positions, &handed, hull_alone, scratch)
 }
 
 /// Rounds from claims to claims, at most `most`, while there are illegal edges and fewer than `least` of them (four times as
@@ -160,7 +159,7 @@ pub fn flip_tail(
     while !illegal.is_empty() && illegal.len() < limit && report.rounds < most as u64 {
         limit = least.saturating_mul(4);
         let flips = flip_edges(mesh, scratch, &mut illegal);
-        let (_, next, tests) = advance_edges(mesh, positions, &illegal, hull_alone, scratch);
+        let (next, tests) = advance_edges(mesh, positions, &illegal, hull_alone, scratch);
         illegal = next;
         report += FlipReport { rounds: 1, flips, tests };
     }

@@ -5,12 +5,13 @@
 //! a triangle, or with [`ON_EDGE`] a half-edge, the lower one of its edge; [`NONE`] for a point that is done. [`WON`] says
 //! that it got what it claims.
 //!
-//! For each slot there are three words of claims: the least score, the least priority among points with that score, and
+//! For each slot there are three words of claims: the least score, the least precedence among points with that score, and
 //! by which point the triangle was split last: four times its number, and 3 if the point lies inside, or else which of its
 //! edges was split.
 
 use super::super::certify::before;
 use super::super::key;
+use super::super::key::precedence;
 use super::super::locate::{Place, Walk};
 use super::super::sector::{Center, sector};
 use crate::DualizeError;
@@ -157,14 +158,14 @@ pub fn insert_locate(
     Ok(out)
 }
 
-/// Of the points with the least score of a triangle, the one with the least priority gets it.
+/// Of the points with the least score of a triangle, the one with the least precedence gets it.
 pub fn insert_claim(mesh: &GhostMesh, waiting: &[[u32; 2]], places: &mut [[u32; 2]], claims: &mut [[u32; 3]]) {
     for (&[point, _], entry) in waiting.iter().zip(places) {
         let [place, score] = *entry;
         for t in triangles(mesh, place) {
             let [least, first, _] = &mut claims[t as usize];
             if *least == score {
-                *first = (*first).min(priority(point));
+                *first = (*first).min(precedence(point));
             }
             if place & ON_EDGE != 0 {
                 entry[1] = t;
@@ -188,7 +189,7 @@ pub fn insert_graft(
     for (&[point, _], entry) in waiting.iter().zip(places) {
         let [place, other] = *entry;
         let h = place & PLACE;
-        let got = |t: u32| claims[t as usize][1] == priority(point);
+        let got = |t: u32| claims[t as usize][1] == precedence(point);
         if place == NONE {
             continue;
         }
@@ -240,8 +241,8 @@ fn split_side(mesh: &mut GhostMesh, side: u32, p: u32, s: u32) {
     mesh.links[s as usize][1] = outer;
 }
 
-/// Outer edges of what was split get their links, and claims are cleared. Returns half-edges: of the edges around new
-/// vertices, if they are to be flipped, and of all edges of new ghost triangles.
+/// Outer edges of what was split get their links, and claims are cleared. Returns half-edges: if flips are to be made, of the
+/// edges around new vertices, those at the ghost vertex left out, and none twice; and of all edges of new ghost triangles.
 #[allow(clippy::too_many_arguments, reason = "those of a kernel")]
 pub fn insert_relink(
     mesh: &mut GhostMesh,
@@ -275,11 +276,15 @@ pub fn insert_relink(
         };
         for side in outer {
             let old = mesh.twin(side);
-            match renamed(mesh, slots, claims, rounds, round, old) {
+            let split = renamed(mesh, slots, claims, rounds, round, old);
+            match split {
                 Some(new) => mesh.links[(side / 3) as usize][side as usize % 3] = new,
                 None => mesh.link(side, old),
             }
-            edges.extend(flips.then_some(side));
+            // An edge between two that were split is on the list by its lower side.
+            let once = split.is_none_or(|new| side < new);
+            let finite = mesh.origin(side) != GHOST && mesh.destination(side) != GHOST;
+            edges.extend((flips && once && finite).then_some(side));
         }
         let parts = [h / 3, s, u].into_iter().chain(on_edge.then_some(other));
         for t in parts.filter(|&t| mesh.is_ghost(t as usize)) {
@@ -315,9 +320,9 @@ fn renamed(
     })
 }
 
-/// How many of the listed edges a round of flips takes: all or none.
-pub fn insert_turn(edge_count: u32, flips: bool) -> u32 {
-    if flips { edge_count } else { 0 }
+/// How many points go on waiting: none where so many edges of the hull are still reflex.
+pub fn insert_turn(waiting: u32, reflex: u32) -> u32 {
+    if reflex == 0 { waiting } else { 0 }
 }
 
 /// The triangles that a place claims.
