@@ -227,6 +227,36 @@ fn everything_lent_is_used_and_nothing_of_it_destroyed() {
     assert_eq!(owner.end(), Vec::<String>::new());
 }
 
+/// Everything together: points and constraints in buffers on the lent device, and the result there.
+#[test]
+fn whole_triangulations_on_a_lent_device() {
+    use polder::Options;
+
+    let _alone = alone();
+    let pslg = polder_io::generate::segments(400, 80, 3);
+    let expected = polder::triangulate(&pslg, &Options::with_backend(polder::Backend::Cpu)).unwrap().triangulation;
+    let owner = Owner::new(Gpu::open().device.has(Feature::ShaderFloat64));
+    let allocator = owner.allocator();
+    for named in [&[][..], &[Feature::ShaderFloat64]] {
+        let device = owner.lend(Some(Arc::clone(&allocator)), named, None);
+        let mut gpu = polder::Gpu::on(&device).unwrap();
+        assert!(gpu.triangulate(&pslg, &Options::default()).unwrap().triangulation == expected);
+        let points = Buffer::new(&device, "points", pslg.points().len()).unwrap();
+        let constraints = Buffer::new(&device, "constraints", pslg.constraints().len()).unwrap();
+        gpu.engine().upload(points.view(), pslg.points()).unwrap();
+        gpu.engine().upload(constraints.view(), pslg.constraints()).unwrap();
+        let all = (points.view(), constraints.view());
+        let mut result = gpu.triangulate_constrained_on_device(all.0, all.1, &Options::default()).unwrap();
+        assert_eq!(result.report().stages_on_cpu().count(), 0);
+        assert!(result.fetch().unwrap() == expected);
+        drop((gpu, points, constraints, device));
+        assert_eq!(given_out(&allocator), 0);
+        owner.use_device();
+    }
+    drop(allocator);
+    assert_eq!(owner.end(), Vec::<String>::new());
+}
+
 #[test]
 fn a_lent_device_may_fail_and_is_still_the_owners() {
     let _alone = alone();

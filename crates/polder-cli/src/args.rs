@@ -146,7 +146,7 @@ pub(crate) struct TriangulateArgs {
     #[arg(long, value_name = "FORMAT")]
     pub(crate) to: Option<MeshFormat>,
 
-    /// What becomes of segments that cross where no point is. New points follow the input's, in the order of rounds, x, y;
+    /// What becomes of segments that cross where no point is, on every backend: the CPU names or cuts them. New points follow the input's, in the order of rounds, x, y;
     /// with .ele, --node writes where they are
     #[arg(long, value_name = "POLICY", default_value = "error")]
     pub(crate) crossings: CrossingChoice,
