@@ -11,9 +11,9 @@ use std::time::Instant;
 /// Constraints are not counted.
 ///
 /// Measured on an NVIDIA H200 and its host, in a process that triangulates uniform points once. With kernels from the cache
-/// on disk, opening takes 175 ms (Vulkan 65, the device 70, the self-test 25, kernels 13), and a million points then 15 ms.
+/// on disk, opening takes 190 ms (Vulkan 70, the device 73, the self-test 30, kernels 15), and a million points then 12 ms.
 /// The CPU takes 208 ms for them with 16 threads, 302 with 8, 360 with 4, 558 with one; so both take as long for about
-/// 900,000, 600,000, 500,000 and 300,000 points. The first opening on a machine compiles all kernels: 0.66 s with 16 threads,
+/// 970,000, 650,000, 550,000 and 350,000 points. The first opening on a machine compiles all kernels: 0.7 s with 16 threads,
 /// 3.5 s with one. Whoever triangulates more than once opens a [`Gpu`] and keeps it.
 pub const AUTO_FROM: usize = 1_000_000;
 /// The most threads that count as few.
