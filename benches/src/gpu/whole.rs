@@ -286,7 +286,7 @@ fn least_bytes(stage: &StageReport, input: &Input, pixels: u64) -> u64 {
         "walk" => (8 + 8 + 8) * constraints + mesh / 2,
         // Ends; of each triangle that is run through corners, links, one position and an owner; flips.
         "constrain" => 8 * count("pieces") + (24 + 16 + 8) * count("intersections") + 8 * 24 * count("flips"),
-        "flip" => mesh + 16 * points + 8 * 24 * count("flips"),
+        "flip" | "flip_points" => mesh + 16 * points + 8 * 24 * count("flips"),
         // The mesh, the numbers of points and of chains in, the same and representatives out.
         "canonical_order" => 2 * mesh + 12 * points + 2 * 8 * constraints,
         _ => 0,

@@ -32,8 +32,9 @@ pub(super) struct Held {
     /// If there are constraints.
     pub(super) constraints: Option<constraints::Held>,
     pub(super) flip: flip::Buffers,
-    /// The ghost flips of the shift, and the flips of the last stage.
+    /// The ghost flips of the shift, the flips before constraints go in, and those of the last stage.
     pub(super) hull: Tally,
+    pub(super) flips_first: Tally,
     pub(super) flips: Tally,
     pub(super) mesh: Mesh,
     pub(super) canonical: canonical::Buffers,
@@ -86,7 +87,7 @@ impl Held {
         flip.give(pool);
         let canonical = pipeline.canonical.buffers(points, mesh.capacity())?;
         pool.clear();
-        let (hull, flips) = (Tally::new(device)?, Tally::new(device)?);
+        let [hull, flips_first, flips] = [Tally::new(device)?, Tally::new(device)?, Tally::new(device)?];
         Ok(Self {
             needs,
             voronoi,
@@ -97,6 +98,7 @@ impl Held {
             constraints,
             flip,
             hull,
+            flips_first,
             flips,
             mesh,
             canonical,
@@ -128,6 +130,8 @@ pub(super) struct Reads {
     pub(super) hull: TallyRead,
     pub(super) insert: insert::Read,
     pub(super) constraints: Option<constraints::Reads>,
+    /// Where the points are flipped before constraints go in.
+    pub(super) flip_points: Option<TallyRead>,
     pub(super) flip: TallyRead,
     pub(super) canonical: canonical::CountsRead,
 }
@@ -140,6 +144,7 @@ pub(super) struct Found {
     pub(super) shift: shift::Counts,
     pub(super) hull: FlipReport,
     pub(super) insert: insert::Counts,
+    pub(super) flip_points: Option<FlipReport>,
     pub(super) flip: FlipReport,
     pub(super) canonical: canonical::Counts,
     /// If there were constraints.
@@ -165,6 +170,7 @@ impl Reads {
             shift: self.shift.result(report)?,
             hull: self.hull.report(report),
             insert: self.insert.result(report)?,
+            flip_points: self.flip_points.as_ref().map(|read| read.report(report)),
             flip: self.flip.report(report),
             canonical: self.canonical.counts(report),
             chains: None,
@@ -195,7 +201,8 @@ impl Found {
 
     /// Stages in order, each with what it counted.
     pub(super) fn counts(&self) -> Vec<(&'static str, Vec<(&'static str, u64)>)> {
-        let Self { voronoi, dualize, shift, hull, insert, flip, canonical, chains } = self;
+        let Self { voronoi, dualize, shift, hull, insert, flip_points, flip, canonical, chains } = self;
+        let flips = |flip: &FlipReport| vec![("rounds", flip.rounds), ("flips", flip.flips), ("tests", flip.tests)];
         let mut stages = vec![
             ("bounds", vec![]),
             (
@@ -228,9 +235,10 @@ impl Found {
                 ],
             ),
         ];
+        stages.extend(flip_points.iter().map(|report| ("flip_points", flips(report))));
         stages.extend(chains.iter().flat_map(constraints::Found::counts));
         stages.extend([
-            ("flip", vec![("rounds", flip.rounds), ("flips", flip.flips), ("tests", flip.tests)]),
+            ("flip", flips(flip)),
             (
                 "canonical_order",
                 vec![("triangles", canonical.triangles.into()), ("long_lists", canonical.long_lists.into())],

@@ -4,7 +4,8 @@
 //!    pixel grid fitted to it.
 //! 2. All stages are one recording: digital Voronoi diagram, dualization, shift, insertion, walks of the constraints,
 //!    insertion of constraints, flips, canonical order with its certificate. Loops run ahead, so that the host waits once if
-//!    they take no more rounds than was guessed. Without constraints nothing is recorded for them.
+//!    they take no more rounds than was guessed. Without constraints nothing is recorded for them; with about as many as
+//!    there are points, most of them are edges of the Delaunay triangulation, and flips come before them too.
 //! 3. What the stages found wrong is looked at; then the result is fetched, or lent where it lies.
 //!
 //! Constraints that cross are met on the device; which ones they are is found on the CPU, from the points and constraints
