@@ -93,7 +93,7 @@ fn every_family_has_the_digest_of_the_cpu() {
 #[test]
 fn every_family_with_integers_alone() {
     let mut gpu = open(Arithmetic::Integers);
-    for (name, pslg) in constrained_families(300, 72) {
+    for (name, pslg) in constrained_families(1000, 72) {
         assert_same(&mut gpu, name, &pslg, &Options::default());
     }
     close(gpu);
@@ -211,7 +211,7 @@ fn data(name: &str) -> Pslg {
 #[test]
 fn real_sets() {
     let mut gpu = open(Arithmetic::Filtered);
-    for name in ["a_letter.poly", "box.poly", "face.poly", "spiral.poly"] {
+    for name in ["a_letter.poly", "box.poly", "coast.poly", "contours.poly", "face.poly", "spiral.poly"] {
         let pslg = data(name);
         let report = assert_same(&mut gpu, name, &pslg, &Options::default());
         assert!(report.constraints.constrained_edges > 0, "{name}");
