@@ -2,6 +2,8 @@
 // it is looked for, and one to the right, and the mesh is walked from the one to the other. On the way is an edge that the
 // walker crosses for certain: its ends lie on different sides of the walker, and the walker's on different sides of it. Or a
 // vertex turns up that lies on the walker.
+//
+// What lies farther off than half a piece does not serve: pieces would begin out of order, and some walk to the end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "items.glsl"
@@ -42,9 +44,16 @@ uint seed_near(ivec2 cell, ivec2 aside, uint k, uint which) {
     return inside ? seeds.at[2u * (uint(cell.y) * width + uint(cell.x)) + which] : NONE;
 }
 
+// Whether an edge or a vertex, of one end twice, lies less than half a piece from a place, along the walker.
+bool is_near(Point p, Point q, i64vec2 place, ivec2 aside, int64_t piece) {
+    i64vec2 middle = place_of(p, exponent, low_x, low_y) + place_of(q, exponent, low_x, low_y) >> 1;
+    return abs(aside.x == 0 ? middle.x - place.x : middle.y - place.y) * 2 <= piece;
+}
+
 // An edge that is crossed by the line from a to b, by its half-edge that begins to the right, or a vertex between a and b; or
 // NONE.
-uint crossed_near(ivec2 cell, ivec2 aside, Point a, Point b) {
+uint crossed_near(i64vec2 place, ivec2 aside, int64_t piece, Point a, Point b) {
+    ivec2 cell = ivec2(cell_of(place, width, height));
     uint candidate = 0u;
     uint edges = 0u;
     uint left = NONE;
@@ -93,14 +102,16 @@ uint crossed_near(ivec2 cell, ivec2 aside, Point a, Point b) {
             bool against_line = k < 2u;
             Point tested = k == 0u ? p : k == 1u ? q : k == 2u ? a : b;
             int side = orient2d(against_line ? a : p, against_line ? b : q, tested);
-            if (side == 0 && against_line && lies_ahead(a, tested, a, b) && lies_ahead(tested, b, a, b)) {
+            bool on_line = side == 0 && against_line;
+            if (on_line && lies_ahead(a, tested, a, b) && lies_ahead(tested, b, a, b) &&
+                is_near(tested, tested, place, aside, piece)) {
                 return AT_VERTEX | (k == 0u ? first : second);
             }
             apart = side != 0 && ((k & 1u) == 0u || side == -side_before);
             side_of_first = k == 0u ? side : side_of_first;
             side_before = side;
         }
-        if (joined && apart) {
+        if (joined && apart && is_near(p, q, place, aside, piece)) {
             return side_of_first < 0 ? walker.h : twin(links, walker.h);
         }
         if (walks) {
@@ -135,7 +146,8 @@ void main() {
         i64vec2 across = place_of(b, exponent, low_x, low_y) - from;
         i64vec2 place = from + across * int64_t(piece_number(piece)) / int64_t(piece_count_of(piece));
         bool flat_line = abs(across.x) >= abs(across.y);
-        ivec2 cell = ivec2(cell_of(place, width, height));
-        pieces.at[p].z = crossed_near(cell, flat_line ? ivec2(0, 1) : ivec2(1, 0), a, b);
+        int64_t long_way = flat_line ? abs(across.x) : abs(across.y);
+        ivec2 aside = flat_line ? ivec2(0, 1) : ivec2(1, 0);
+        pieces.at[p].z = crossed_near(place, aside, long_way / int64_t(piece_count_of(piece)), a, b);
     }
 }

@@ -5,7 +5,7 @@
 //!    be expected to cross. The later ones of all walkers stand in a list, those of one walker together.
 //! 3. *Beginnings.* Where a piece is to begin, a vertex to the left of the walker and one to the right are taken from cells
 //!    nearby. A walk from the one to the other comes over an edge that the walker crosses; exact signs say that it does.
-//!    A vertex on the walker serves as well. Where nothing is found the piece has no beginning, and the one before goes on.
+//!    It must not lie far off along the walker, else pieces begin out of order. A vertex on the walker serves as well. Where nothing is found the piece has no beginning, and the one before goes on.
 //!
 //! A piece ends where the next one begins that has a beginning, or else at the end of the walker. Nobody knows whether
 //! beginnings stand in order along the walker. If they do not, a piece comes to the end though there are later ones; then the
@@ -26,7 +26,7 @@ const WORKGROUP: u32 = 256;
 const GROUPS: u32 = 1056;
 
 /// Triangles that a piece is meant to have.
-pub const TRIANGLES: u32 = 64;
+pub const TRIANGLES: u32 = 32;
 
 /// A coarse grid over points. Integers decide what lies where.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +42,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// Over the bounding box of so many points; four to sixteen of them to a cell, if they lie everywhere.
+    /// Over the bounding box of so many points; two to eight of them to a cell, if they lie everywhere.
     pub fn over(low: DVec2, high: DVec2, points: usize) -> Self {
         let cells = cells_of(points) as u64;
         let largest = low.abs().max(high.abs()).max_element();
@@ -89,6 +89,17 @@ impl Grid {
         y * self.size[0] as usize + x
     }
 
+    /// Whether what lies between two points is near enough to where piece `number` of `count` is to begin: for tests.
+    #[doc(hidden)]
+    pub fn is_near(&self, line: [DVec2; 2], number: u32, count: u32, between: [DVec2; 2]) -> bool {
+        let at = |p: DVec2| [0, 1].map(|k| floor_units(p[k], self.exponent) - self.low[k]);
+        let ([from, to], [p, q]) = (line.map(at), between.map(at));
+        let across = [0, 1].map(|k| to[k] - from[k]);
+        let k = usize::from(across[0].abs() < across[1].abs());
+        let place = from[k] + across[k] * i64::from(number) / i64::from(count);
+        (((p[k] + q[k]) >> 1) - place).abs() * 2 <= across[k].abs() / i64::from(count)
+    }
+
     /// The seeds near where piece `number` of `count` is to begin, in the order in which they are looked at: for tests.
     #[doc(hidden)]
     pub fn seeds_near(&self, line: [DVec2; 2], number: u32, count: u32, seeds: &[[u32; 2]]) -> Vec<u32> {
@@ -120,7 +131,7 @@ impl Grid {
 
 /// Cells that a grid over so many points may have.
 fn cells_of(points: usize) -> usize {
-    (points / 4).max(1)
+    (points / 2).max(1)
 }
 
 /// floor(x / 2^exponent), saturated at 62 bits.

@@ -6,7 +6,7 @@ use polder_vulkan::{Buffer, Device, Error, Estimate, Pool, View};
 
 const WORDS: usize = 28;
 /// Room for later pieces beyond one for every four constraints.
-const SPARE_PIECES: usize = 1 << 14;
+const SPARE_PIECES: usize = 1 << 16;
 
 /// Places of words that the host knows, as in `walk.glsl`.
 #[derive(Clone, Copy)]

@@ -294,18 +294,20 @@ fn crossed_between(mesh: &GhostMesh, positions: &[DVec2], spokes: &[u32], [from,
 
 /// Where the line between two vertices is, near some others: the first edge that it crosses, by the half-edge that begins to
 /// the right, or vertex that it runs through, on the way from a vertex to the left to one to the right. Of the candidates, the
-/// first of either kind are tried, then the first among the rest, and so on.
+/// first of either kind are tried, then the first among the rest, and so on. `near` says what serves.
 pub fn find_beginnings(
     mesh: &GhostMesh,
     positions: &[DVec2],
     spokes: &[u32],
     line: [u32; 2],
     candidates: &[u32],
+    near: impl Fn([DVec2; 2]) -> bool,
 ) -> Option<Beginning> {
     let at = |v: u32| positions[v as usize];
     let [a, b] = line.map(at);
     let side = |v: u32| orient2d(a, b, at(v));
-    let between = |v: u32| side(v) == Sign::Zero && !line.contains(&v) && ahead(a, at(v), b) && ahead(b, at(v), a);
+    let inside = |v: u32| !line.contains(&v) && ahead(a, at(v), b) && ahead(b, at(v), a);
+    let between = |v: u32| side(v) == Sign::Zero && inside(v) && near([at(v); 2]);
     let apart = |p: Sign, q: Sign| p != Sign::Zero && p as i8 == -(q as i8);
     let [mut left, mut right] = [None; 2];
     for &v in candidates {
@@ -330,7 +332,8 @@ pub fn find_beginnings(
                 return Some(Beginning::AtVertex(v));
             }
             let across = |p: DVec2| orient2d(at(u), at(v), p);
-            if let (Beginning::Crossing(h), true) = (found, apart(side(u), side(v)) && apart(across(a), across(b))) {
+            let crossed = apart(side(u), side(v)) && apart(across(a), across(b)) && near([at(u), at(v)]);
+            if let (Beginning::Crossing(h), true) = (found, crossed) {
                 return Some(Beginning::Crossing(if side(u) == Sign::Negative { h } else { mesh.twin(h) }));
             }
         }
