@@ -5,9 +5,14 @@ use super::work::crossings_met;
 use crate::Error;
 use polder_canonical::gpu as canonical;
 use polder_constrain::gpu::{insert, walk};
+use polder_constrain::reference::MOST_SUB_CONSTRAINTS;
 use polder_constrain::{ConstrainError, Fault, InsertReport};
 use polder_flip::gpu::{Arithmetic, Mesh};
-use polder_vulkan::{Device, Estimate, Pool, Recording, RunReport};
+use polder_vulkan::{Device, Estimate, Pool, Recording, RunReport, View};
+
+/// Kernels reach 4 GiB from an address: of so many constraints, and of so many vertices between their ends, all lists fit.
+const MOST_CONSTRAINTS: usize = 1 << 27;
+const MOST_STOPS: usize = u32::MAX as usize / 12;
 
 /// The kernels.
 #[derive(Debug)]
@@ -36,7 +41,7 @@ impl Kernels {
         recording.section("walk");
         let walk = self.walk.record(recording, mesh, &held.walk, input)?;
         recording.section("constrain");
-        let sub_constraints = held.walk.sub_constraints();
+        let sub_constraints = held.sub_constraints()?;
         let (spokes, degrees) = (held.walk.spokes(), held.walk.degrees());
         let count = Some(held.walk.sub_constraint_count()?);
         let pieces = input.grid.map(|grid| (grid, held.walk.pieces()));
@@ -64,13 +69,31 @@ impl Needs {
         self.constraints == other.constraints && self.stops >= other.stops
     }
 
+    /// Whether a device can do it.
+    ///
+    /// # Errors
+    ///
+    /// [`Error::Unsupported`].
+    pub(super) fn check(&self) -> Result<(), Error> {
+        let Self { constraints, stops } = *self;
+        let sizes = [
+            (constraints, MOST_CONSTRAINTS, "constraints"),
+            (stops, MOST_STOPS, "vertices that constraints run through"),
+        ];
+        match sizes.into_iter().find(|(count, most, _)| count > most) {
+            Some((count, most, what)) => Err(too_many(count, most, what)),
+            None => Ok(()),
+        }
+    }
+
     pub(super) fn estimate(&self, points: usize, slots: usize) -> Estimate {
         if self.constraints == 0 {
             return Estimate::new();
         }
         let walk = walk::Stage::estimate(points, self.constraints, self.stops);
         let pieces = walk::Stage::pieces(self.constraints);
-        walk.and(insert::Stage::estimate(self.constraints + self.stops, pieces, slots))
+        let sub_constraints = (self.constraints + self.stops).min(MOST_SUB_CONSTRAINTS);
+        walk.and(insert::Stage::estimate(sub_constraints, pieces, slots))
     }
 }
 
@@ -87,9 +110,16 @@ impl Held {
         let walk = kernels.walk.buffers(points, needs.constraints, needs.stops)?;
         walk.give(pool);
         let pieces = walk.pieces().pieces().len();
-        let insert = kernels.insert.buffers(walk.sub_constraints().len(), pieces, mesh.capacity())?;
+        let sub_constraints = walk.sub_constraints().len().min(MOST_SUB_CONSTRAINTS);
+        let insert = kernels.insert.buffers(sub_constraints, pieces, mesh.capacity())?;
         insert.give(pool);
         Ok(Self { walk, insert })
+    }
+
+    /// All that may be inserted.
+    fn sub_constraints(&self) -> Result<View<'_, [u32; 2]>, Error> {
+        let all = self.walk.sub_constraints();
+        Ok(all.slice(0..all.len().min(MOST_SUB_CONSTRAINTS))?)
     }
 
     /// The vertices along constraints, to be given their names.
@@ -135,6 +165,10 @@ impl Reads {
     /// [`crossings_met`]; all else is a defect.
     pub(super) fn found(&self, report: &RunReport) -> Result<Found, Error> {
         let walk = self.walk.result(report)?;
+        let pieces = walk.sub_constraints as usize;
+        if pieces > MOST_SUB_CONSTRAINTS {
+            return Err(too_many(pieces, MOST_SUB_CONSTRAINTS, "pieces of constraints"));
+        }
         let insert = self.insert.counts(report);
         let internal = |what: String| Err(Error::Internal { stage: "constrain", what });
         match insert.fault {
@@ -153,6 +187,10 @@ impl Reads {
     }
 }
 
+fn too_many(count: usize, most: usize, what: &str) -> Error {
+    Error::Unsupported { what: format!("{count} {what}: a device takes {most} at most, the backend cpu more") }
+}
+
 impl Found {
     /// Both stages, each with what it counted.
     pub(super) fn counts(&self) -> [(&'static str, Vec<(&'static str, u64)>); 2] {
@@ -166,5 +204,20 @@ impl Found {
             ("flips", insertion.all_flips()),
         ];
         [("walk", vec![("pieces", *pieces), ("chain_vertices", *vertices)]), ("constrain", constrain)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_kernels_do_not_reach_is_refused() {
+        assert_eq!(Needs::usual(0).check(), Ok(()));
+        assert_eq!(Needs::usual(MOST_CONSTRAINTS).check(), Ok(()));
+        let stops = MOST_STOPS + 1;
+        for needs in [Needs::usual(MOST_CONSTRAINTS + 1), Needs { constraints: 1, stops }] {
+            assert!(needs.check().is_err_and(|error| error.kind() == "unsupported"));
+        }
     }
 }

@@ -121,7 +121,7 @@ impl Gpu {
     ///
     /// - [`Error::CrossingConstraints`] as on the CPU: which pairs cross is found there, once one is met on the device. Where
     ///   they shall be split that is done on the CPU too, with [`Error::SplitTooLarge`] and [`Error::SplitUnfinished`].
-    /// - [`Error::Unsupported`] for a grid that cannot be.
+    /// - [`Error::Unsupported`] for a grid that cannot be, and for more than 2²⁷ constraints or 2²⁸ pieces of them.
     /// - [`Error::OutOfMemory`] if memory does not suffice, which is found out before any work; [`Error::DeviceLost`].
     /// - [`Error::Cancelled`]; [`Error::BoundExceeded`] and [`Error::Internal`] are defects of polder.
     pub fn triangulate(&mut self, pslg: &Pslg, options: &Options) -> Result<Output, Error> {

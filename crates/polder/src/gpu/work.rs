@@ -126,6 +126,7 @@ impl Gpu {
 
     /// Memory for such an input; nothing is done if that is what there is.
     fn make_room(&mut self, needs: Needs) -> Result<(), Error> {
+        needs.constraints.check()?;
         if self.held.as_ref().is_none_or(|held| !held.fits(&needs)) {
             self.held = None;
             self.held = Some(Held::new(&self.device, &self.pipeline, needs)?);
