@@ -171,6 +171,47 @@ fn walks_go_on() {
     }
 }
 
+/// Four hundred constraints through one vertex, and one through all triangles of a strip.
+#[test]
+fn many_through_one_vertex_and_one_through_many_triangles() {
+    let (mut gpu, [stage, _]) = stages();
+    let mut points = vec![DVec2::ZERO];
+    for i in 0..400 {
+        let (y, x) = (std::f64::consts::PI * (f64::from(i) + 0.5) / 400.0).sin_cos();
+        points.extend([DVec2::new(x, y), DVec2::new(-x, -y)]);
+    }
+    let diameters = (0..400).map(|i| [2 * i + 1, 2 * i + 2]).collect();
+    let case = Case::new(&Pslg::new(points, diameters).unwrap());
+    assert!(case.expected.chains.iter().all(|chain| chain.len() == 3));
+    assert_walked(&mut gpu, &stage, "diameters", &case);
+
+    let strip = generate::lattice(2000, 2).points().to_vec();
+    let case = Case::new(&Pslg::new(strip, vec![[0, 3999]]).unwrap());
+    assert!(case.expected.crossed_edges[0] > 3900);
+    assert_walked(&mut gpu, &stage, "strip", &case);
+}
+
+#[test]
+fn a_recording_serves_again_and_buffers_for_other_numbers_are_refused() {
+    let (mut gpu, [stage, _]) = stages();
+    let case = Case::new(&generate::segments(600, 120, 8));
+    let grid = Some(grid(&case.positions).with_piece_length(64));
+    let on = record(&mut gpu, &stage, &case, 100, grid);
+    for _ in 0..3 {
+        on.assert(&mut gpu, "segments", &case);
+    }
+    let vertices = case.positions.len();
+    let mesh = Mesh::new(&gpu.device, vertices).unwrap();
+    let constraints = gpu.buffer(&case.constraints);
+    for (vertices, count) in [(vertices - 1, 120), (vertices, 119), (vertices, 121)] {
+        let buffers = stage.buffers(vertices, count, 100).unwrap();
+        let mut recording = gpu.recording();
+        let input = Input { constraints: constraints.view(), names: None, grid };
+        assert!(stage.record(&mut recording, &mesh, &buffers, input).is_err());
+        assert!(recording.is_empty());
+    }
+}
+
 #[test]
 fn too_little_room_says_how_much_is_needed() {
     let (mut gpu, [stage, _]) = stages();

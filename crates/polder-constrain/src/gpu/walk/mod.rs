@@ -3,7 +3,8 @@
 //! 1. *Names.* The ends of the constraints, as the input numbers its points, become vertices of the mesh.
 //! 2. *Edges.* Every vertex learns some half-edge that leaves it, and how many do. A constraint looks for its other end
 //!    among the neighbors of the end that has fewer, by their numbers alone: then it is an edge and done.
-//! 3. *Walk.* The others walk straight to their other end, one invocation each, and list the vertices that they meet. Signs
+//! 3. *Walk.* The others walk straight to their other end, one invocation each, and list the vertices that they meet; long
+//!    ones go in [`pieces`](super::pieces), one invocation for each. Signs
 //!    are always those of the whole line, so that a step is one orientation wherever the walk is. A walk that has not ended
 //!    after some number of steps goes on in the next dispatch.
 //! 4. *Chains.* A constraint's chain is its ends and what it met; where chains begin is a prefix sum. From each vertex of a
@@ -14,7 +15,7 @@
 //!
 //! # Cost
 //!
-//! Memory: 8 bytes a vertex, 32 a constraint, and 24 for each vertex that may be met. A constraint that is an edge reads a
+//! Memory: 12 bytes a vertex, 37 a constraint, and 24 for each vertex that may be met between ends. A constraint that is an edge reads a
 //! row of the mesh for each spoke that it looks at, half of them on average.
 
 mod buffers;
