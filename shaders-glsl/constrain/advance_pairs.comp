@@ -9,7 +9,6 @@ layout(push_constant, std430) uniform Args {
     ReadU32 triangles;
     U32 links;
     ReadPoints positions;
-    ReadU32 owner;
     U32 state;
     U32x2 pairs;
     U32 words;
@@ -32,15 +31,15 @@ void main() {
         Candidate found = NO_PAIR;
         if (i < end) {
             uvec2 entry = pairs.at[parity * stride + (i >> 2)];
-            Look look = settle(links, U32(owner), state, stride, parity, round, entry, i & 3u);
+            Look look = settle(links, state, parity, round, entry, i & 3u);
             found = look.known;
             if (look.a != NONE && found.a == NONE) {
-                found = candidate(U32(triangles), links, positions, U32(owner), state, stride, round, look.a);
+                found = candidate(U32(triangles), links, positions, state, round, look.a);
             }
         }
         uint place = place_in(words, CANDIDATES + (parity ^ 1u), found.a != NONE);
         if (found.a != NONE) {
-            claim(state, stride, parity ^ 1u, found);
+            claim(state, parity ^ 1u, found);
             pairs.at[(parity ^ 1u) * stride + place] = found.entry;
         }
     }

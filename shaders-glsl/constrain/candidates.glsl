@@ -22,16 +22,16 @@ bool is_convex(Point near, Point right, Point far, Point left) {
 // Whether the pair of triangle A and the next one of its owner may be flipped, and in which case. Links may be those before
 // or after they were renewed.
 Candidate candidate(
-    WORDS triangles, WORDS links, ReadPoints positions, WORDS owner, WORDS state, uint stride, uint round, uint a
+    WORDS triangles, WORDS links, ReadPoints positions, WORDS state, uint round, uint a
 ) {
-    uint word = owner.at[a];
+    uint word = state.at[OWNED(a)];
     uint out_of = outward(word);
     if (word == FREE || out_of == NO_EDGE) {
         return NO_PAIR;
     }
     uint h = 3u * a + out_of;
-    uint g = resolved(links, state, stride, round, h);
-    uint next_word = owner.at[g / 3u];
+    uint g = resolved(links, state, round, h);
+    uint next_word = state.at[OWNED(g / 3u)];
     if (!same_owner(word, next_word)) {
         return NO_PAIR;
     }
@@ -61,8 +61,8 @@ Candidate candidate(
                 break;
             }
             // A pair of this kind is not the first of its chain.
-            uint entry = resolved(links, state, stride, round, 3u * a + into);
-            uint before_word = owner.at[entry / 3u];
+            uint entry = resolved(links, state, round, 3u * a + into);
+            uint before_word = state.at[OWNED(entry / 3u)];
             if (!same_owner(word, before_word)) {
                 break;
             }

@@ -10,7 +10,6 @@ layout(push_constant, std430) uniform Args {
     ReadU32 triangles;
     ReadU32 links;
     ReadPoints positions;
-    ReadU32 owner;
     U32 state;
     ReadU32x4 pieces;
     ReadU32 piece_count;
@@ -22,19 +21,24 @@ layout(push_constant, std430) uniform Args {
     uint piece_limit;
 };
 
+// Triangles that a workgroup takes at once, and those of them that got their owner.
+const uint BLOCK = 2048u;
+shared uint new_ones[BLOCK];
+shared uint new_count;
+
 bool is_new(uint t, uint round) {
-    return state.at[STAMP(t)] == (round << 2 | LISTED);
+    return stamp_of(state, t) == (round << 2 | LISTED);
 }
 
 // The triangle after t along its owner, or before it; NONE if it has another owner.
 uint beside(uint t, bool after) {
-    uint word = owner.at[t];
+    uint word = state.at[OWNED(t)];
     uint gate = after ? outward(word) : inward(word);
     if (gate == NO_EDGE) {
         return NONE;
     }
     uint x = twin(links, 3u * t + gate) / 3u;
-    return same_owner(word, owner.at[x]) ? x : NONE;
+    return same_owner(word, state.at[OWNED(x)]) ? x : NONE;
 }
 
 void main() {
@@ -50,40 +54,51 @@ void main() {
             add_wide(words, WALKED, piece_walked.at[p]);
         }
     }
-    for (uint begin = group_index() * WORKGROUP; begin < end; begin += item_stride()) {
-        uint i = begin + gl_LocalInvocationIndex;
-        bool mine = i < end && owner.at[i] != FREE && is_new(i, round);
-        uint t = mine ? i : NONE;
-        uint some;
-        sum_before(uint(mine), some);
-        if (some == 0u) {
-            continue;
+    // Before the first round nothing was owned.
+    uint turns = words.at[OUTER] == 0u ? 1u : 3u;
+    uint rank = gl_LocalInvocationIndex;
+    for (uint begin = group_index() * BLOCK; begin < end; begin += gl_NumWorkGroups.x * gl_NumWorkGroups.y * BLOCK) {
+        barrier();
+        if (rank == 0u) {
+            new_count = 0u;
         }
-        // The triangle itself. The one before it, if that is older, cannot have been the first of a pair before. The one after
-        // it, if that is older, can, but then in case 1; and if the one after that is new, it is looked at from there.
-        [[dont_unroll]] for (uint turn = 0u; turn < 3u; turn++) {
-            uint a = t;
-            if (t != NONE && turn != 0u) {
-                a = beside(t, turn == 2u);
-                if (a != NONE && is_new(a, round)) {
-                    a = NONE;
-                }
-                if (a != NONE && turn == 2u) {
-                    uint c = beside(a, true);
-                    a = c != NONE && is_new(c, round) ? NONE : a;
-                }
+        barrier();
+        for (uint i = begin + rank; i < min(begin + BLOCK, end); i += WORKGROUP) {
+            if (state.at[OWNED(i)] != FREE && is_new(i, round)) {
+                new_ones[atomicAdd(new_count, 1u)] = i;
             }
-            Candidate found = NO_PAIR;
-            if (a != NONE) {
-                found = candidate(U32(triangles), U32(links), positions, U32(owner), state, stride, NONE, a);
-                if (turn == 2u && found.entry.y >> CLAIM_BITS == 0u) {
-                    found = NO_PAIR;
+        }
+        barrier();
+        uint count = new_count;
+        for (uint from = 0u; from < count; from += WORKGROUP) {
+            uint t = from + rank < count ? new_ones[from + rank] : NONE;
+            // The triangle itself. The one before it, if that is older, cannot have been the first of a pair before. The one
+            // after it, if that is older, can, but then in case 1; and if the one after that is new, it is looked at from
+            // there.
+            [[dont_unroll]] for (uint turn = 0u; turn < turns; turn++) {
+                uint a = t;
+                if (t != NONE && turn != 0u) {
+                    a = beside(t, turn == 2u);
+                    if (a != NONE && is_new(a, round)) {
+                        a = NONE;
+                    }
+                    if (a != NONE && turn == 2u) {
+                        uint c = beside(a, true);
+                        a = c != NONE && is_new(c, round) ? NONE : a;
+                    }
                 }
-            }
-            uint place = place_in(words, CANDIDATES + parity, found.a != NONE);
-            if (found.a != NONE) {
-                claim(state, stride, parity, found);
-                pairs.at[parity * stride + place] = found.entry;
+                Candidate found = NO_PAIR;
+                if (a != NONE) {
+                    found = candidate(U32(triangles), U32(links), positions, state, NONE, a);
+                    if (turn == 2u && found.entry.y >> CLAIM_BITS == 0u) {
+                        found = NO_PAIR;
+                    }
+                }
+                uint place = place_in(words, CANDIDATES + parity, found.a != NONE);
+                if (found.a != NONE) {
+                    claim(state, parity, found);
+                    pairs.at[parity * stride + place] = found.entry;
+                }
             }
         }
     }

@@ -7,7 +7,6 @@
 layout(push_constant, std430) uniform Args {
     U32 triangles;
     U32 links;
-    U32 owner;
     U32 state;
     U32x2 pairs;
     U32 spokes;
@@ -32,8 +31,8 @@ void main() {
     barrier();
     for (uint i = item_index(); i < end; i += item_stride()) {
         uvec2 entry = pairs.at[parity * stride + i];
-        if (wins(links, state, stride, parity, entry)) {
-            if (flip_pair(triangles, links, owner, state, spokes, degrees, stride, round, entry.x)) {
+        if (wins(links, state, parity, entry)) {
+            if (flip_pair(triangles, links, state, spokes, degrees, round, entry.x)) {
                 atomicAdd(flips_of_group[3], 1u);
             }
             pairs.at[parity * stride + i].x = entry.x | WON;

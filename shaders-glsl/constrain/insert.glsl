@@ -81,6 +81,14 @@ const uint WON = 0x80000000u;
 // Instead of an edge in a stamp: listed, not flipped.
 const uint LISTED = 3u;
 
+// State is four words a triangle, all NONE at first: the least key that claims it, in even and in odd rounds, else NONE; its
+// stamp, four times the last round that flipped or listed it, plus the edge along which it was flipped, or LISTED, all
+// inverted; and whose it is.
+#define CLAIM(T, PARITY) (4u * (T) + (PARITY))
+#define STAMP(T) (4u * (T) + 2u)
+#define OWNED(T) (4u * (T) + 3u)
+#define stamp_of(STATE, T) (~STATE.at[STAMP(T)])
+
 uint scatter(uint id, uint bits) {
     uint mask = (1u << bits) - 1u;
     uint x = id;

@@ -18,8 +18,7 @@ layout(push_constant, std430) uniform Args {
     ReadU32 piece_count;
     WriteU32 piece_walked; // by later piece, the triangles that it crossed
     U32 lost;
-    U32 owner;
-    WriteU32 state; // of which the stamps say who got its owner in this round
+    U32 state; // of which the stamps say who got its owner in this round
     U32 words;
     uint stride;
     uint piece_limit;
@@ -34,9 +33,9 @@ void lose(uint s) {
 }
 
 void own(uint s, uint word, uint t, uint stamp) {
-    uint old = atomicMin(owner.at[t], word);
+    uint old = atomicMin(state.at[OWNED(t)], word);
     if (old == FREE) {
-        state.at[2u * stride + t] = stamp;
+        state.at[STAMP(t)] = ~stamp;
     } else if (!same_owner(old, word)) {
         lose(old < word ? s : owner_of(old));
     }

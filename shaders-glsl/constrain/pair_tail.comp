@@ -10,7 +10,6 @@ layout(push_constant, std430) uniform Args {
     SharedU32 triangles;
     SharedU32 links;
     ReadPoints positions;
-    SharedU32 owner;
     SharedU32 state;
     SharedU32x2 pairs;
     SharedU32 spokes;
@@ -25,6 +24,7 @@ layout(push_constant, std430) uniform Args {
     uint inner;      // inner rounds of an outer round,
     uint long_chain; // once more for so many triangles of an average walk
     uint most_times;
+    uint usual_rounds; // and for so many outer rounds before
 };
 
 shared uint flips[4];
@@ -43,7 +43,9 @@ uint limit_of_round() {
     uint64_t before = packUint2x32(uvec2(words.at[WALKED_BEFORE], words.at[WALKED_BEFORE + 1u]));
     uint64_t walked = packUint2x32(uvec2(words.at[WALKED], words.at[WALKED + 1u])) - before;
     uint64_t walkers = uint64_t(max(words.at[WALKERS], 1u));
-    return inner * uint(min(1ul + walked / (uint64_t(long_chain) * walkers), uint64_t(most_times)));
+    uint64_t late = uint64_t(words.at[OUTER_ROUNDS] / usual_rounds);
+    uint64_t times = 1ul + max(walked / (uint64_t(long_chain) * walkers), late);
+    return inner * uint(min(times, uint64_t(most_times)));
 }
 
 // What the next outer round finds; by one invocation.
@@ -116,8 +118,8 @@ void main() {
         }
         for (uint i = rank; i < count; i += WORKGROUP) {
             uvec2 entry = pairs.at[parity * stride + i];
-            if (wins(links, state, stride, parity, entry)) {
-                if (flip_pair(triangles, links, owner, state, spokes, degrees, stride, round, entry.x)) {
+            if (wins(links, state, parity, entry)) {
+                if (flip_pair(triangles, links, state, spokes, degrees, round, entry.x)) {
                     atomicAdd(flips[3], 1u);
                 }
                 pairs.at[parity * stride + i].x = entry.x | WON;
@@ -127,13 +129,13 @@ void main() {
         wait();
         for (uint i = rank; i < 4u * count; i += WORKGROUP) {
             uvec2 entry = pairs.at[parity * stride + (i >> 2)];
-            Look look = settle(links, owner, state, stride, parity, round, entry, i & 3u);
+            Look look = settle(links, state, parity, round, entry, i & 3u);
             Candidate found = look.known;
             if (look.a != NONE && found.a == NONE) {
-                found = candidate(triangles, links, positions, owner, state, stride, round, look.a);
+                found = candidate(triangles, links, positions, state, round, look.a);
             }
             if (found.a != NONE) {
-                claim(state, stride, parity ^ 1u, found);
+                claim(state, parity ^ 1u, found);
                 pairs.at[(parity ^ 1u) * stride + atomicAdd(next_count, 1u)] = found.entry;
             }
         }

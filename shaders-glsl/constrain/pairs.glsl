@@ -1,14 +1,10 @@
 // Inner rounds: pairs of triangles with the same owner are flipped. `inner` of the reference.
 //
-// State is three arrays of `stride` words: by triangle the least key that claims it, in even and in odd rounds, else NONE;
-// and its stamp, four times the last round that flipped or listed it, plus the edge along which it was flipped, or LISTED.
+// Triangles have a state: see `insert.glsl`.
 #ifndef PAIRS_GLSL
 #define PAIRS_GLSL
 
 #include "insert.glsl"
-
-#define CLAIM(T, PARITY) ((PARITY) * stride + (T))
-#define STAMP(T) (2u * stride + (T))
 
 // A pair (A, C) that may be flipped: A, C, and the two words of its entry in a list; or nothing, with A NONE.
 struct Candidate {
@@ -23,7 +19,7 @@ uint key_of(uvec2 entry) {
     return (entry.y & ~NO_B) | scatter((entry.x & HALF_EDGE) / 3u, CLAIM_BITS);
 }
 
-void claim(WORDS state, uint stride, uint parity, Candidate pair) {
+void claim(WORDS state, uint parity, Candidate pair) {
     uint key = key_of(pair.entry);
     uint b = pair.entry.y & NO_B;
     atomicMin(state.at[CLAIM(pair.a, parity)], key);
@@ -35,7 +31,7 @@ void claim(WORDS state, uint stride, uint parity, Candidate pair) {
 
 // Whether a candidate has all that it claimed. Who does not have the first triangle may read what another changes, and
 // does not look at it.
-bool wins(WORDS links, WORDS state, uint stride, uint parity, uvec2 entry) {
+bool wins(WORDS links, WORDS state, uint parity, uvec2 entry) {
     uint key = key_of(entry);
     uint b = entry.y & NO_B;
     if (state.at[CLAIM(entry.x / 3u, parity)] != key || (b != NO_B && state.at[CLAIM(b, parity)] != key)) {
@@ -51,7 +47,7 @@ bool is_flipped(uint stamp, uint round) {
 // Flips h, from A to C, both of the same owner; nobody else touches them. Outer links keep the names that they had before the
 // round. Whether the new edge is the owner itself.
 bool flip_pair(
-    WORDS triangles, WORDS links, WORDS owner, WORDS state, WORDS spokes, WORDS degrees, uint stride, uint round, uint h
+    WORDS triangles, WORDS links, WORDS state, WORDS spokes, WORDS degrees, uint round, uint h
 ) {
     uint g = twin(links, h);
     uint t = h / 3u;
@@ -68,9 +64,9 @@ bool flip_pair(
     uint far = triangles.at[g];
     uint t_outer = links.at[h1];
     uint u_outer = links.at[g1];
-    uint word = owner.at[t];
+    uint word = state.at[OWNED(t)];
     int near_side = side_of(word);
-    int far_side = side_of(owner.at[u]);
+    int far_side = side_of(state.at[OWNED(u)]);
     bool zero = near_side == 0 && far_side == 0;
     triangles.at[h2] = far;
     triangles.at[g2] = near;
@@ -79,15 +75,15 @@ bool flip_pair(
     uint mark = zero ? CONSTRAINED : 0u;
     links.at[h1] = g1 | mark;
     links.at[g1] = h1 | mark;
-    state.at[STAMP(t)] = round << 2 | k;
-    state.at[STAMP(u)] = round << 2 | j;
+    state.at[STAMP(t)] = ~(round << 2 | k);
+    state.at[STAMP(u)] = ~(round << 2 | j);
     // Corners from k on: near, right, far in t; from j on far, left, near in u.
     uint t_in = near_side == 1 ? turned(k, 2u) : near_side == -1 && far_side == 1 ? turned(k, 1u) : NO_EDGE;
     uint t_out = far_side == 1 ? k : far_side == -1 && near_side == 1 ? turned(k, 1u) : NO_EDGE;
     uint u_in = near_side == -1 ? j : near_side == 1 && far_side == -1 ? turned(j, 1u) : NO_EDGE;
     uint u_out = far_side == -1 ? turned(j, 2u) : far_side == 1 && near_side == -1 ? turned(j, 1u) : NO_EDGE;
-    owner.at[t] = near_side == 1 || far_side == 1 ? (word & ~15u) | t_out << 2 | t_in : FREE;
-    owner.at[u] = near_side == -1 || far_side == -1 ? (word & ~15u) | u_out << 2 | u_in : FREE;
+    state.at[OWNED(t)] = near_side == 1 || far_side == 1 ? (word & ~15u) | t_out << 2 | t_in : FREE;
+    state.at[OWNED(u)] = near_side == -1 || far_side == -1 ? (word & ~15u) | u_out << 2 | u_in : FREE;
     // Half-edges of the other two still leave them. Each vertex may be that of several flips; what any of them writes will do.
     spokes.at[right] = h;
     spokes.at[left] = g;
@@ -103,13 +99,16 @@ bool flip_pair(
 
 // The other side of a half-edge after the flips of a round, whether its link has been renewed or not. The outer edge behind
 // a flipped one went over to the other triangle.
-uint resolved(WORDS links, WORDS state, uint stride, uint round, uint side) {
+uint resolved(WORDS links, WORDS state, uint round, uint side) {
     uint outer = twin(links, side);
-    uint stamp = state.at[STAMP(side / 3u)];
+    if (round == NONE) {
+        return outer;
+    }
+    uint stamp = stamp_of(state, side / 3u);
     if (is_flipped(stamp, round) && side == next_edge(side - side % 3u + (stamp & 3u))) {
         return outer;
     }
-    stamp = state.at[STAMP(outer / 3u)];
+    stamp = stamp_of(state, outer / 3u);
     if (is_flipped(stamp, round) && outer == next_edge(outer - outer % 3u + (stamp & 3u))) {
         return prev_edge(twin(links, outer));
     }
@@ -117,11 +116,11 @@ uint resolved(WORDS links, WORDS state, uint stride, uint round, uint side) {
 }
 
 // Renews the link of an outer side of a flip.
-void renew(WORDS links, WORDS state, uint stride, uint round, uint side) {
+void renew(WORDS links, WORDS state, uint round, uint side) {
     uint outer = links.at[side];
     uint mark = outer & CONSTRAINED;
     outer &= HALF_EDGE;
-    uint stamp = state.at[STAMP(outer / 3u)];
+    uint stamp = stamp_of(state, outer / 3u);
     if (is_flipped(stamp, round)) {
         if (outer == next_edge(outer - outer % 3u + (stamp & 3u))) {
             outer = prev_edge(twin(links, outer));
@@ -133,11 +132,11 @@ void renew(WORDS links, WORDS state, uint stride, uint round, uint side) {
 }
 
 // Whether this invocation is the first to list a triangle that was not flipped.
-bool lists(WORDS state, uint stride, uint round, uint t) {
-    if (state.at[STAMP(t)] >> 2 == round) {
+bool lists(WORDS state, uint round, uint t) {
+    if (stamp_of(state, t) >> 2 == round) {
         return false;
     }
-    return atomicMax(state.at[STAMP(t)], round << 2 | LISTED) >> 2 != round;
+    return ~atomicMin(state.at[STAMP(t)], ~(round << 2 | LISTED)) >> 2 != round;
 }
 
 // What one of four lanes of an item looks at: a triangle, or NONE; and the pair, where it is known to be one still.
@@ -148,7 +147,7 @@ struct Look {
 
 // Renews a link around a flip, gives claimed triangles back, and finds what to look at again: the two triangles of a flip,
 // the one before and the one after them; and the first triangle of a pair that was not flipped.
-Look settle(WORDS links, WORDS owner, WORDS state, uint stride, uint parity, uint round, uvec2 entry, uint lane) {
+Look settle(WORDS links, WORDS state, uint parity, uint round, uvec2 entry, uint lane) {
     Look look = Look(NONE, NO_PAIR);
     uint h = entry.x & HALF_EDGE;
     uint b = entry.y & NO_B;
@@ -157,7 +156,7 @@ Look settle(WORDS links, WORDS owner, WORDS state, uint stride, uint parity, uin
         if (lane != 0u) {
             return look;
         }
-        uint stamp = state.at[STAMP(t)];
+        uint stamp = stamp_of(state, t);
         uint side = h;
         if (is_flipped(stamp, round) && h == next_edge(h - h % 3u + (stamp & 3u))) {
             side = prev_edge(twin(links, h));
@@ -169,11 +168,11 @@ Look settle(WORDS links, WORDS owner, WORDS state, uint stride, uint parity, uin
         if (b != NO_B) {
             state.at[CLAIM(b, parity)] = NONE;
         }
-        if (lists(state, stride, round, t)) {
+        if (lists(state, round, t)) {
             look.a = t;
-            bool changed = is_flipped(state.at[STAMP(c)], round);
+            bool changed = is_flipped(stamp_of(state, c), round);
             if (b != NO_B) {
-                changed = changed || is_flipped(state.at[STAMP(b)], round);
+                changed = changed || is_flipped(stamp_of(state, b), round);
             }
             if (!changed) {
                 look.known = Candidate(t, c, entry);
@@ -183,10 +182,10 @@ Look settle(WORDS links, WORDS owner, WORDS state, uint stride, uint parity, uin
     }
     uint g = prev_edge(twin(links, next_edge(h)));
     uint u = g / 3u;
-    uint of_t = owner.at[t];
-    uint of_u = owner.at[u];
+    uint of_t = state.at[OWNED(t)];
+    uint of_u = state.at[OWNED(u)];
     uint edge = (lane & 1u) == 0u ? h : g;
-    renew(links, state, stride, round, lane < 2u ? edge : prev_edge(edge));
+    renew(links, state, round, lane < 2u ? edge : prev_edge(edge));
     if (lane < 2u) {
         state.at[CLAIM(lane == 0u ? t : u, parity)] = NONE;
         look.a = lane == 0u ? (of_t == FREE ? NONE : t) : (of_u == FREE ? NONE : u);
@@ -204,8 +203,8 @@ Look settle(WORDS links, WORDS owner, WORDS state, uint stride, uint parity, uin
     uint word = at_t ? of_t : of_u;
     uint gate = lane == 2u ? inward(word) : outward(word);
     if (gate != NO_EDGE) {
-        uint x = resolved(links, state, stride, round, 3u * (at_t ? t : u) + gate) / 3u;
-        if (same_owner(word, owner.at[x]) && lists(state, stride, round, x)) {
+        uint x = resolved(links, state, round, 3u * (at_t ? t : u) + gate) / 3u;
+        if (same_owner(word, state.at[OWNED(x)]) && lists(state, round, x)) {
             look.a = x;
         }
     }

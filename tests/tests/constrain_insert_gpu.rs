@@ -2,6 +2,8 @@
 #![cfg(feature = "gpu-tests")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+#[path = "../../crates/polder-constrain/tests/common/bad_case.rs"]
+mod bad_case;
 mod constrain_support;
 mod vulkan_support;
 
@@ -214,4 +216,43 @@ fn buffers_for_less_are_refused() {
         assert!(recording.is_empty());
     }
     assert!(stages[0].buffers(reference::MOST_SUB_CONSTRAINTS + 1, 1, 10).is_err());
+}
+
+/// Quadratic in flips, linear in rounds, and no worse than that: the bound of [QCT] claims 1 and 2.
+fn assert_bad_case(gpu: &mut Gpu, stage: &Stage, k: usize) {
+    let (start, positions, ends) = bad_case::bad_mesh(k);
+    let chain = reference::triangle_chain(&start, &positions, ends).unwrap();
+    let length = chain.triangles.len() as u64;
+    let case = Case { mesh: &start, positions: &positions, sub_constraints: &[ends] };
+    let report = assert_inserted(gpu, stage, "bad case", &case);
+    assert!(k < 5 || report.flips[2] >= (k * k) as u64, "{report}");
+    assert!(report.all_flips() <= length * length && report.inner_rounds <= 4 * length, "{report}");
+}
+
+#[test]
+fn the_bad_case_for_some_k() {
+    let (mut gpu, stages) = stages();
+    for (turn, k) in [1, 2, 5, 25, 100, 200].into_iter().enumerate() {
+        assert_bad_case(&mut gpu, &stages[turn % 2], k);
+    }
+}
+
+#[test]
+#[ignore = "long: cargo xtask ci --long"]
+fn the_bad_case_for_large_k() {
+    let (mut gpu, stages) = stages();
+    for k in [500, 1000] {
+        assert_bad_case(&mut gpu, &stages[0], k);
+    }
+}
+
+/// All constraints of a fan run through the same few triangles: rounds for each layer of them, more inner rounds in later ones.
+#[test]
+fn a_fan() {
+    let (mut gpu, stages) = stages();
+    let start = Start::stage_4(&polder_io::generate::fan(1200, 5));
+    let subs = reference::walk(&start.mesh, &start.positions, &start.constraints).unwrap().sub_constraints;
+    let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
+    let report = assert_inserted(&mut gpu, &stages[0], "fan", &case);
+    assert!(report.outer_rounds < 30 && report.inner_rounds > 8 * report.outer_rounds, "{report}");
 }

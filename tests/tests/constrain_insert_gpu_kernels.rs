@@ -117,7 +117,7 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// A case on the device. Its stride is that of arrays whose parts begin at multiples of 16 bytes.
+/// A case on the device.
 struct On {
     mesh: Mesh,
     stride: usize,
@@ -131,8 +131,7 @@ struct On {
     piece_count: Buffer<u32>,
     piece_walked: Buffer<u32>,
     lost: Buffer<u32>,
-    owner: Buffer<u32>,
-    state: Buffer<u32>,
+    state: Buffer<[u32; 4]>,
     pairs: Buffer<[u32; 2]>,
     words: Buffer<u32>,
 }
@@ -142,7 +141,7 @@ impl On {
     fn new(gpu: &mut Gpu, case: &Case, words: &[(usize, u32)]) -> Self {
         let parity = case.scratch.round as usize & 1;
         let slots = case.start.mesh.slots();
-        let stride = slots.next_multiple_of(4);
+        let stride = slots;
         let mesh = Mesh::with_slots(&gpu.device, case.start.positions.len(), slots).unwrap();
         mesh.upload(&mut gpu.engine, &case.start.mesh, &case.start.positions).unwrap();
         let mut all = [0; 40];
@@ -153,9 +152,12 @@ impl On {
         words.iter().for_each(|&(place, word)| all[place] = word);
         let mut pairs = vec![[7; 2]; 2 * stride];
         pairs[parity * stride..][..case.pairs.len()].copy_from_slice(&case.pairs);
-        let mut state = vec![NONE; 3 * stride];
-        state[parity * stride..][..slots].copy_from_slice(&case.scratch.claims);
-        state[2 * stride..][..slots].copy_from_slice(&case.scratch.stamps);
+        let Scratch { owner, claims, stamps, .. } = &case.scratch;
+        let one = |t: usize| {
+            let claims = if parity == 0 { [claims[t], NONE] } else { [NONE, claims[t]] };
+            [claims[0], claims[1], !stamps[t], owner[t]]
+        };
+        let state: Vec<[u32; 4]> = (0..slots).map(one).collect();
         let room = case.subs.len().max(1);
         Self {
             mesh,
@@ -170,7 +172,6 @@ impl On {
             piece_count: gpu.buffer(&[0]),
             piece_walked: gpu.buffer(&[7]),
             lost: gpu.buffer(&vec![0; room]),
-            owner: gpu.buffer(&case.scratch.owner),
             state: gpu.buffer(&state),
             pairs: gpu.buffer(&pairs),
             words: gpu.buffer(&all),
@@ -197,15 +198,14 @@ impl On {
     }
 
     /// Whether all is as expected after rounds that left claims of this parity; the other claims are given back.
-    fn assert_state(&self, gpu: &mut Gpu, case: &Case, parity: usize, other: Option<&[u32]>) {
-        let slots = case.start.mesh.slots();
-        let state = gpu.fetch(self.state.view());
-        let name = case.name;
-        assert!(gpu.fetch(self.owner.view()) == case.scratch.owner, "{name}: owners");
-        assert!(state[parity * self.stride..][..slots] == case.scratch.claims, "{name}: claims");
-        let nothing = vec![NONE; slots];
-        assert!(state[(1 - parity) * self.stride..][..slots] == *other.unwrap_or(&nothing), "{name}: other claims");
-        assert!(state[2 * self.stride..][..slots] == case.scratch.stamps, "{name}: stamps");
+    fn assert_state(&self, gpu: &mut Gpu, case: &Case, parity: usize) {
+        let (state, name) = (gpu.fetch(self.state.view()), case.name);
+        let is = |k: usize, expected: &dyn Fn(usize) -> u32| (0..state.len()).all(|t| state[t][k] == expected(t));
+        let Scratch { owner, claims, stamps, .. } = &case.scratch;
+        assert!(is(3, &|t| owner[t]), "{name}: owners");
+        assert!(is(parity, &|t| claims[t]), "{name}: claims");
+        assert!(is(1 - parity, &|_| NONE), "{name}: other claims");
+        assert!(is(2, &|t| !stamps[t]), "{name}: stamps");
         assert!(self.mesh(gpu) == case.start.mesh, "{name}: mesh");
     }
 
@@ -309,8 +309,7 @@ fn mark_chains() {
                 piece_count: on.piece_count.view(),
                 piece_walked: on.piece_walked.view(),
                 lost: on.lost.view(),
-                owner: on.owner.view(),
-                state: on.state.view(),
+                state: on.state.view().cast(),
                 words: on.words.view(),
                 stride: on.stride as u32,
                 piece_limit: 1,
@@ -318,7 +317,7 @@ fn mark_chains() {
             run::<MarkChains>(&mut gpu, EXACT, 2, &arguments);
             let expected = case.mark(&walkers);
             let parity = case.scratch.round as usize & 1;
-            on.assert_state(&mut gpu, &case, parity, None);
+            on.assert_state(&mut gpu, &case, parity);
             assert_eq!(on.word(&mut gpu, MARKED), u32::from(!walkers.is_empty()));
             assert_eq!(u64::from(on.word(&mut gpu, WALKED)), expected.walked);
             assert_eq!(on.word(&mut gpu, LOSERS) as usize, expected.losers.len());
@@ -345,13 +344,12 @@ fn configure_pairs() {
     for mut case in cases() {
         let walkers = case.depart().walkers;
         let marked = case.mark(&walkers).triangles;
-        let on = On::new(&mut gpu, &case, &[(MARKED, 1)]);
+        let on = On::new(&mut gpu, &case, &[(MARKED, 1), (OUTER, case.scratch.round)]);
         let arguments = ConfigurePairsArgs {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
             positions: on.mesh.positions().cast(),
-            owner: on.owner.view(),
-            state: on.state.view(),
+            state: on.state.view().cast(),
             pieces: on.pieces.view(),
             piece_count: on.piece_count.view(),
             piece_walked: on.piece_walked.view(),
@@ -365,7 +363,7 @@ fn configure_pairs() {
         case.configure(&marked);
         let parity = case.scratch.round as usize & 1;
         assert!(on.pairs(&mut gpu, parity) == sorted(&case.pairs), "{}", case.name);
-        on.assert_state(&mut gpu, &case, parity, None);
+        on.assert_state(&mut gpu, &case, parity);
         pairs += case.pairs.len();
         let mut distinct = sorted(&case.pairs);
         distinct.dedup_by_key(|pair| pair[0]);
@@ -396,8 +394,7 @@ fn flip_pairs() {
             let arguments = FlipPairsArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
-                owner: on.owner.view(),
-                state: on.state.view(),
+                state: on.state.view().cast(),
                 pairs: on.pairs.view().cast(),
                 spokes: on.spokes.view(),
                 degrees: on.degrees.view(),
@@ -414,7 +411,7 @@ fn flip_pairs() {
             assert_eq!(on.word(&mut gpu, TAKEN), if least == taken { taken } else { 0 });
             assert_eq!(on.flips(&mut gpu), expected, "{}", case.name);
             assert!(on.pairs(&mut gpu, parity) == sorted(&case.pairs), "{}", case.name);
-            on.assert_state(&mut gpu, &case, parity, None);
+            on.assert_state(&mut gpu, &case, parity);
             if least == taken {
                 on.assert_spokes(&mut gpu, &case);
             }
@@ -440,8 +437,7 @@ fn advance_pairs() {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
             positions: on.mesh.positions().cast(),
-            owner: on.owner.view(),
-            state: on.state.view(),
+            state: on.state.view().cast(),
             pairs: on.pairs.view().cast(),
             words: on.words.view(),
             stride: on.stride as u32,
@@ -454,7 +450,7 @@ fn advance_pairs() {
         assert_eq!(on.word(&mut gpu, INNER_ROUNDS), turned);
         assert!(on.pairs(&mut gpu, 1 - parity) == sorted(&case.pairs), "{}", case.name);
         assert_eq!(on.word(&mut gpu, CANDIDATES + parity), 0);
-        on.assert_state(&mut gpu, &case, 1 - parity, None);
+        on.assert_state(&mut gpu, &case, 1 - parity);
         pairs += case.pairs.len();
     }
     assert!(pairs > 100, "{pairs}");
@@ -477,8 +473,7 @@ fn pair_tail() {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
-                owner: on.owner.view(),
-                state: on.state.view(),
+                state: on.state.view().cast(),
                 pairs: on.pairs.view().cast(),
                 spokes: on.spokes.view(),
                 degrees: on.degrees.view(),
@@ -492,6 +487,7 @@ fn pair_tail() {
                 inner: 8,
                 long_chain: 64,
                 most_times: 8,
+                usual_rounds: 4,
             };
             run::<PairTail>(&mut gpu, EXACT, 1, &arguments);
             let bounds = [least as usize, most.min(limit - inner) as usize];
@@ -509,7 +505,7 @@ fn pair_tail() {
             assert_eq!(turned, if goes_on { [outer, losers, inner] } else { [outer + 1, 0, 0] });
             assert_eq!(on.flips(&mut gpu), flips, "{}", case.name);
             assert!(on.pairs(&mut gpu, parity) == sorted(&left), "{}", case.name);
-            on.assert_state(&mut gpu, &case, parity, None);
+            on.assert_state(&mut gpu, &case, parity);
             on.assert_spokes(&mut gpu, &case);
             rounds_of_all += rounds;
             left_of_all += left.len();

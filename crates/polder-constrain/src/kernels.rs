@@ -10,20 +10,19 @@ define_kernel! {
         0: read triangles: View<'a, u32>,
         8: both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
-        24: read owner: View<'a, u32>,
-        32: both state: View<'a, u32>,
-        40: both pairs: View<'a, [u32; 2]>,
-        48: both words: View<'a, u32>,
+        24: both state: View<'a, u32>,
+        32: both pairs: View<'a, [u32; 2]>,
+        40: both words: View<'a, u32>,
     }
     values {
-        56: stride: u32,
+        48: stride: u32,
     }
-    argument_bytes 60;
+    argument_bytes 52;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "da023d824d04470ebb300e3c6d36d08643c9daae1a4c6a39999a5311a266753c";
+    source "64840ca21235bcfcaba75fff86da63b76f9d30d2bf6bfe47f42fc1d135216b01";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -36,25 +35,24 @@ define_kernel! {
         0: read triangles: View<'a, u32>,
         8: read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
-        24: read owner: View<'a, u32>,
-        32: both state: View<'a, u32>,
-        40: read pieces: View<'a, [u32; 4]>,
-        48: read piece_count: View<'a, u32>,
-        56: read piece_walked: View<'a, u32>,
-        64: both pairs: View<'a, [u32; 2]>,
-        72: both words: View<'a, u32>,
+        24: both state: View<'a, u32>,
+        32: read pieces: View<'a, [u32; 4]>,
+        40: read piece_count: View<'a, u32>,
+        48: read piece_walked: View<'a, u32>,
+        56: both pairs: View<'a, [u32; 2]>,
+        64: both words: View<'a, u32>,
     }
     values {
-        80: stride: u32,
-        84: slots: u32,
-        88: piece_limit: u32,
+        72: stride: u32,
+        76: slots: u32,
+        80: piece_limit: u32,
     }
-    argument_bytes 92;
+    argument_bytes 84;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "eb219abe4adaf5146b142d828c92c874d394767007e9b986f86ed88972700b75";
+    source "15141413294ff6622870084b58eb85926c81386d76dd0efb6819477fe87c58b4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -84,7 +82,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "233ab52e08154a21930b859faceea8b597b60d70f118c00199a09472c2de0541";
+    source "f201f3d547ab9049f3f1e79345a6cde7b52ca62a81f82574918adbaf805da627";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -180,22 +178,21 @@ define_kernel! {
     buffers {
         0: both triangles: View<'a, u32>,
         8: both links: View<'a, u32>,
-        16: both owner: View<'a, u32>,
-        24: both state: View<'a, u32>,
-        32: both pairs: View<'a, [u32; 2]>,
-        40: both spokes: View<'a, u32>,
-        48: both degrees: View<'a, u32>,
-        56: both words: View<'a, u32>,
+        16: both state: View<'a, u32>,
+        24: both pairs: View<'a, [u32; 2]>,
+        32: both spokes: View<'a, u32>,
+        40: both degrees: View<'a, u32>,
+        48: both words: View<'a, u32>,
     }
     values {
-        64: stride: u32,
-        68: least: u32,
+        56: stride: u32,
+        60: least: u32,
     }
-    argument_bytes 72;
+    argument_bytes 64;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "da4534c07aa27cc59b4ec331a4dbe22a324c494818995b7f00abb0f538cd2df4";
+    source "4753b96a23c454b8db707f333eee352da4e650f1ab32794ec825ecbbdbc09d4b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -241,19 +238,18 @@ define_kernel! {
         72: read piece_count: View<'a, u32>,
         80: written piece_walked: View<'a, u32>,
         88: both lost: View<'a, u32>,
-        96: both owner: View<'a, u32>,
-        104: written state: View<'a, u32>,
-        112: both words: View<'a, u32>,
+        96: both state: View<'a, u32>,
+        104: both words: View<'a, u32>,
     }
     values {
-        120: stride: u32,
-        124: piece_limit: u32,
+        112: stride: u32,
+        116: piece_limit: u32,
     }
-    argument_bytes 128;
+    argument_bytes 120;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "bc7d8842f9c415156d6e78fa00efd32379056953d1def1704a18521237bde5fe";
+    source "e0122f167f63918ed9f99103895fbb12f29db1b2e67d848723ce8e57d5cad498";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -305,29 +301,29 @@ define_kernel! {
         0: both triangles: View<'a, u32>,
         8: both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
-        24: both owner: View<'a, u32>,
-        32: both state: View<'a, u32>,
-        40: both pairs: View<'a, [u32; 2]>,
-        48: both spokes: View<'a, u32>,
-        56: both degrees: View<'a, u32>,
-        64: maybe_read counter: Option<View<'a, u32>>,
-        72: both words: View<'a, u32>,
+        24: both state: View<'a, u32>,
+        32: both pairs: View<'a, [u32; 2]>,
+        40: both spokes: View<'a, u32>,
+        48: both degrees: View<'a, u32>,
+        56: maybe_read counter: Option<View<'a, u32>>,
+        64: both words: View<'a, u32>,
     }
     values {
-        80: stride: u32,
-        84: limit: u32,
-        88: least: u32,
-        92: most: u32,
-        96: most_pairs: u32,
-        100: inner: u32,
-        104: long_chain: u32,
-        108: most_times: u32,
+        72: stride: u32,
+        76: limit: u32,
+        80: least: u32,
+        84: most: u32,
+        88: most_pairs: u32,
+        92: inner: u32,
+        96: long_chain: u32,
+        100: most_times: u32,
+        104: usual_rounds: u32,
     }
-    argument_bytes 112;
+    argument_bytes 108;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e93808759012df07afd1b3992a75a7573ebaaa48c735b1b6b7c16b4495f7d156";
+    source "0278a4993a3deb84512427b98d8b4dbf7964248eec2eefb53714c7124efb7362";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -24,7 +24,7 @@
 
 use super::pieces::{self, Grid, Walkers};
 use crate::kernels::*;
-use crate::reference::{INNER_ROUNDS, LONG_CHAIN, MOST_SUB_CONSTRAINTS, MOST_TIMES};
+use crate::reference::{INNER_ROUNDS, LONG_CHAIN, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS};
 use crate::{Fault, InsertReport};
 use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_vulkan::{
@@ -35,8 +35,8 @@ const NONE: u32 = u32::MAX;
 const WORKGROUP: u32 = 256;
 const WORDS: usize = 40;
 /// Outer rounds before the host looks, and after that.
-const FIRST: u32 = 6;
-const BATCH: u32 = 3;
+const FIRST: u32 = 5;
+const BATCH: u32 = 4;
 /// Fewer pairs than these are left to the tail, which keeps them up to four times as many.
 const FEW: u32 = 256;
 
@@ -91,11 +91,9 @@ pub struct Input<'a> {
 /// What the stage holds beside the mesh: 32 bytes a slot, 16 a sub-constraint and 4 a piece.
 #[derive(Debug)]
 pub struct Buffers {
-    /// Slots that there is room for, a multiple of four.
     slots: usize,
-    owner: Buffer<u32>,
-    /// By triangle: the least key that claims it, in even rounds and again in odd ones; and its stamp.
-    state: Buffer<u32>,
+    /// By triangle: the least key that claims it, in even rounds and again in odd ones; its stamp; and whose it is.
+    state: Buffer<[u32; 4]>,
     pairs: Buffer<[u32; 2]>,
     walkers: Buffer<u32>,
     firsts: Buffer<u32>,
@@ -109,10 +107,10 @@ pub struct Buffers {
 impl Buffers {
     /// Gives all of it; see [`Buffer::give`].
     pub fn give(&self, pool: &Pool) {
-        for words in [&self.owner, &self.state, &self.walkers, &self.firsts, &self.runs, &self.lost, &self.piece_walked]
-        {
+        for words in [&self.walkers, &self.firsts, &self.runs, &self.lost, &self.piece_walked] {
             words.give(pool);
         }
+        self.state.give(pool);
         self.pairs.give(pool);
     }
 }
@@ -211,9 +209,8 @@ impl Stage {
     /// What [`Stage::buffers`] will hold.
     pub fn estimate(sub_constraints: usize, pieces: usize, slots: usize) -> Estimate {
         Estimate::new()
-            .buffer::<u32>("owners", slots)
-            .buffer::<[u32; 3]>("claims of pairs", slots + 3)
-            .buffer::<[u32; 4]>("pairs", slots + 3)
+            .buffer::<[u32; 4]>("triangles of chains", slots)
+            .buffer::<[u32; 4]>("pairs", slots)
             .buffer::<u32>("walkers", sub_constraints)
             .buffer::<u32>("first edges crossed", sub_constraints)
             .buffer::<u32>("pieces of walkers", sub_constraints)
@@ -230,17 +227,16 @@ impl Stage {
     /// If there are more sub-constraints than [`MOST_SUB_CONSTRAINTS`], or the memory cannot be had: then before any of it is
     /// allocated.
     pub fn buffers(&self, sub_constraints: usize, pieces: usize, slots: usize) -> Result<Buffers, Error> {
-        let (device, stride) = (&self.device, slots.next_multiple_of(4));
+        let device = &self.device;
         if sub_constraints > MOST_SUB_CONSTRAINTS {
             let why = format!("{sub_constraints} sub-constraints; up to {MOST_SUB_CONSTRAINTS} are possible");
             return Err(Error::Recording { command: "constrain", why });
         }
         Self::estimate(sub_constraints, pieces, slots).check(device)?;
         Ok(Buffers {
-            slots: stride,
-            owner: Buffer::new(device, "owners", slots)?,
-            state: Buffer::new(device, "claims of pairs", 3 * stride)?,
-            pairs: Buffer::new(device, "pairs", 2 * stride)?,
+            slots,
+            state: Buffer::new(device, "triangles of chains", slots)?,
+            pairs: Buffer::new(device, "pairs", 2 * slots)?,
             walkers: Buffer::new(device, "walkers", sub_constraints)?,
             firsts: Buffer::new(device, "first edges crossed", sub_constraints)?,
             runs: Buffer::new(device, "pieces of walkers", sub_constraints)?,
@@ -299,8 +295,8 @@ impl Stage {
         let (vertices, slots) = (mesh.vertices(), mesh.capacity());
         let (count, room) = (input.sub_constraints.len(), buffers.lost.len());
         let with_spokes = input.spokes.len().min(input.degrees.len());
-        if vertices > with_spokes || slots > buffers.owner.len() || count > room {
-            let most = buffers.owner.len();
+        if vertices > with_spokes || slots > buffers.slots || count > room {
+            let most = buffers.slots;
             let why = format!("{slots} slots, {count} sub-constraints; buffers for {most} and {room}");
             let why = format!("{why}; {vertices} vertices, spokes of {with_spokes}");
             return Err(Error::Recording { command: "constrain", why });
@@ -335,12 +331,9 @@ impl Stage {
     }
 
     fn record_start(recording: &mut Recording, buffers: &Buffers) -> Result<(), Error> {
-        let slots = buffers.slots;
         recording.fill(buffers.words.view(), 0);
         recording.fill(buffers.words.slice(Word::DepartFault as usize..WORDS)?, NONE);
-        recording.fill(buffers.owner.view(), NONE);
-        recording.fill(buffers.state.slice(0..2 * slots)?, NONE);
-        recording.fill(buffers.state.slice(2 * slots..3 * slots)?, 0);
+        recording.fill(buffers.state.view().cast(), NONE);
         Ok(())
     }
 
@@ -354,7 +347,7 @@ impl Stage {
     ) -> Result<(), Error> {
         let groups = [self.pace.groups, 1, 1];
         let (triangles, links, positions) = (mesh.corners(), mesh.twins(), mesh.positions().cast());
-        let (owner, state, words) = (buffers.owner.view(), buffers.state.view(), buffers.words.view());
+        let (state, words) = (buffers.state.view().cast(), buffers.words.view());
         let Input { spokes, degrees, .. } = input;
         let (walkers, lost) = (buffers.walkers.view(), buffers.lost.view());
         let (firsts, runs, piece_walked) = (buffers.firsts.view(), buffers.runs.view(), buffers.piece_walked.view());
@@ -398,7 +391,6 @@ impl Stage {
             piece_count,
             piece_walked,
             lost,
-            owner,
             state,
             words,
             stride,
@@ -409,7 +401,6 @@ impl Stage {
             triangles,
             links,
             positions,
-            owner,
             state,
             pieces,
             piece_count,
@@ -423,17 +414,15 @@ impl Stage {
         recording.dispatch(&self.configure, groups, &arguments);
         for _ in 0..inner {
             let least = FEW;
-            let arguments =
-                FlipPairsArgs { triangles, links, owner, state, pairs, spokes, degrees, words, stride, least };
+            let arguments = FlipPairsArgs { triangles, links, state, pairs, spokes, degrees, words, stride, least };
             recording.dispatch(&self.flip, groups, &arguments);
-            let arguments = AdvancePairsArgs { triangles, links, positions, owner, state, pairs, words, stride };
+            let arguments = AdvancePairsArgs { triangles, links, positions, state, pairs, words, stride };
             recording.dispatch(&self.advance, groups, &arguments);
         }
         let arguments = PairTailArgs {
             triangles,
             links,
             positions,
-            owner,
             state,
             pairs,
             spokes,
@@ -448,6 +437,7 @@ impl Stage {
             inner,
             long_chain: LONG_CHAIN as u32,
             most_times: MOST_TIMES,
+            usual_rounds: USUAL_ROUNDS as u32,
         };
         recording.dispatch(&self.tail, [1, 1, 1], &arguments);
         Ok(())

@@ -55,7 +55,7 @@ use polder_predicates::Sign;
 /// nearly the fewest rounds in all. On one thread 2 to 8 take the same time.
 ///
 /// Where chains are long, they are so many times more: by one for each [`LONG_CHAIN`] triangles that the walks of the outer
-/// round crossed on average, up to [`MOST_TIMES`]. Of 20,000 constraints from one vertex (6,777,048 intersections), all of
+/// round crossed on average, or by one for each [`USUAL_ROUNDS`] outer rounds before, up to [`MOST_TIMES`]. Of 20,000 constraints from one vertex (6,777,048 intersections), all of
 /// which run through the same few triangles there, 8 rounds took 86 outer rounds and 48,094,358 triangles, 50 rounds took 22
 /// and 21,709,208, and no limit 21 and 19,732,962.
 pub const INNER_ROUNDS: u32 = 8;
@@ -63,6 +63,8 @@ pub const INNER_ROUNDS: u32 = 8;
 pub const LONG_CHAIN: u64 = 64;
 /// See [`INNER_ROUNDS`].
 pub const MOST_TIMES: u32 = 8;
+/// See [`INNER_ROUNDS`].
+pub const USUAL_ROUNDS: u64 = 4;
 
 /// So many sub-constraints can be told apart in the word of a triangle.
 pub const MOST_SUB_CONSTRAINTS: usize = 1 << OWNER_BITS;
@@ -255,7 +257,8 @@ impl<'a> Insertion<'a> {
         let walked = lengths.iter().sum::<u64>();
         self.report.walked += walked;
         let long = walked / (LONG_CHAIN * (walkers.len() as u64).max(1));
-        self.times = MOST_TIMES.min(1 + u32::try_from(long).unwrap_or(MOST_TIMES));
+        let late = self.report.outer_rounds / USUAL_ROUNDS;
+        self.times = MOST_TIMES.min(1 + u32::try_from(long.max(late)).unwrap_or(MOST_TIMES - 1));
         self.report.outer_rounds += 1;
 
         // Step 3.

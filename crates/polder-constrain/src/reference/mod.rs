@@ -34,7 +34,7 @@ pub use configuration::{Configuration, TriangleChain, triangle_chain};
 pub use crossings::crossings;
 #[doc(hidden)]
 pub use inner::Trial;
-pub use insert::{INNER_ROUNDS, Insertion, LONG_CHAIN, MOST_SUB_CONSTRAINTS, MOST_TIMES, insert};
+pub use insert::{INNER_ROUNDS, Insertion, LONG_CHAIN, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS, insert};
 pub use intersection::intersection;
 pub use keys::{claim_key, owner_of, owner_priority};
 pub use walk::walk;
