@@ -32,7 +32,7 @@ layout(push_constant, std430) uniform Args {
 // Cells in which vertices are looked for; how many edges the walks from left to right may cross; and steps, of which there
 // are more where a vertex has very many edges.
 const uint MOST_CELLS = 13u;
-const uint MOST_EDGES = 64u;
+const uint MOST_EDGES = 24u;
 const uint MOST_STEPS = 1024u;
 
 // One of the two seeds of the k-th cell around a cell: itself, then at distances 1, 2 and 3 to either side and along the line.

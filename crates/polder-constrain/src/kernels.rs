@@ -117,7 +117,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "bd864645c5d044049bf76e0a1741f673e83a06fb617bc66e1201f66d27ef203a";
+    source "1c27773582bbabeae5cf0ca6ed3c27c5263f4777436c97c5a2cbceed9ef8f474";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
