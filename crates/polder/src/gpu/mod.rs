@@ -40,8 +40,8 @@ struct Uploaded {
     constraints: Buffer<[u32; 2]>,
 }
 
-/// A Vulkan device with everything that triangulating on it needs: compiled kernels, and the memory of the last call, which
-/// the next one of the same size uses again.
+/// A Vulkan device with everything that triangulating on it needs: compiled kernels (those for constraints once there are
+/// some), and the memory of the last call, which the next one of the same size uses again.
 ///
 /// ```no_run
 /// use polder::{Gpu, Options};
