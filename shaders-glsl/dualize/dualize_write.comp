@@ -2,12 +2,7 @@
 // it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
 // invocations.
 //
-// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead. Seen from
-// its other end they change sides; so each border is followed from one end, where the lower color is on the left, and linked
-// both ways. (A diagram without crossings has no corner that a border leaves by another way than it comes back.)
-//
-// Borders are of very different lengths: the workgroup lists those of as many triangles as it has invocations, and who has
-// come to the end of one takes the next.
+// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x_id = 0, local_size_x = 256) in;
@@ -39,12 +34,6 @@ const uint LONGEST = 1u << 22;
 shared uvec4 words[WORDS];
 // For each triangle of the tile: its corner in the tile, and whether it is the second there.
 shared uint places[WORDS * 64u];
-// Of three colors around one or two are less than the next, so this is room enough. A border's half-edge, the corner and side
-// that it leaves; and its colors.
-shared uvec2 border_starts[2u * WORKGROUP];
-shared uvec2 border_sides[2u * WORKGROUP];
-shared uint border_count;
-shared uint border_next;
 
 uint triangles_of(uvec2 bits) {
     return uint(bitCount(bits.x) + bitCount(bits.y));
@@ -105,8 +94,20 @@ bool reaches(uvec2 sides, inout ivec2 at, inout ivec2 step) {
     return found != sides;
 }
 
-// The half-edge of the vertex that a border with these colors has come to.
-uint arrival(ivec2 at, ivec2 step, uvec2 sides) {
+// The half-edge where the border that leaves a corner by side s ends.
+uint follow(uint x, uint y, uint s, uvec2 sides) {
+    // South, east, north, west as a step.
+    ivec2 step = s == 0u ? ivec2(0, -1) : s == 1u ? ivec2(1, 0) : s == 2u ? ivec2(0, 1) : ivec2(-1, 0);
+    ivec2 at = ivec2(x, y);
+    // Several steps a turn, since llvmpipe ends all loops of an invocation after 65535 turns.
+    uint steps = 0u;
+    while (!reaches(sides, at, step) && !reaches(sides, at, step) && !reaches(sides, at, step)
+        && !reaches(sides, at, step)) {
+        steps += 4u;
+        if (steps >= LONGEST) {
+            return GHOST;
+        }
+    }
     // It is reached by the opposite side; counterclockwise from there left, right, ahead right, ahead left.
     uvec2 found = ahead(at, step);
     uint arrived = step.y != 0 ? uint(1 - step.y) : uint(2 + step.x);
@@ -115,90 +116,6 @@ uint arrival(ivec2 at, ivec2 step, uvec2 sides) {
     uvec2 before = vertices.at[word] & ((1u << (uint(at.x) & 31u)) - 1u);
     uint slot = first.at[word] + triangles_of(before);
     return half_edge(slot, r == 4u ? 4u : arrived + r & 3u, arrived);
-}
-
-// One border after the other, as long as there are some on the list.
-void follow_borders(uvec2 tile) {
-    bool follows = false;
-    uint h = 0u;
-    uint corner = 0u;
-    uvec2 sides = uvec2(0u);
-    ivec2 at = ivec2(0);
-    ivec2 step = ivec2(0);
-    uint steps = 0u;
-    while (true) {
-        if (!follows) {
-            uint border = atomicAdd(border_next, 1u);
-            if (border >= border_count) {
-                break;
-            }
-            uvec2 start = border_starts[border];
-            sides = border_sides[border];
-            h = start.x;
-            corner = start.y >> 2;
-            at = ivec2(tile + uvec2(corner & 63u, corner / 64u));
-            // South, east, north, west as a step.
-            uint s = start.y & 3u;
-            step = s == 0u ? ivec2(0, -1) : s == 1u ? ivec2(1, 0) : s == 2u ? ivec2(0, 1) : ivec2(-1, 0);
-            steps = 0u;
-            follows = true;
-        }
-        // Two steps a turn, since llvmpipe ends all loops of an invocation after 65535 turns.
-        if (reaches(sides, at, step) || reaches(sides, at, step)) {
-            uint g = arrival(at, step, sides);
-            links.at[h] = g;
-            links.at[g] = h;
-            follows = false;
-        }
-        steps += 2u;
-        if (steps >= LONGEST) {
-            links.at[h] = GHOST;
-            uvec2 from = tile + uvec2(corner & 63u, corner / 64u);
-            atomicMin(lost.at[0], from.y * (width + 1u) + from.x);
-            follows = false;
-        }
-    }
-}
-
-// Writes a triangle of the tile, and lists the borders to be followed from it.
-void write_triangle(uint triangle, uint count, uvec2 tile) {
-    uint corner = places[triangle] >> 1u;
-    bool is_second = (places[triangle] & 1u) != 0u;
-    uvec4 word = words[corner / 32u];
-    uint slot = word.z + triangle - word.w;
-    if (slot >= count) {
-        return;
-    }
-    uvec4 c = colors_around(tile.x + (corner & 63u), tile.y + corner / 64u);
-    uint r = repeated(c);
-    uvec3 corners;
-    if (r == 4u) {
-        corners = is_second ? c.xzw : c.xyz;
-    } else {
-        corners = uvec3(c[r + 1u & 3u], c[r + 2u & 3u], c[r + 3u & 3u]);
-    }
-    [[unroll]] for (uint k = 0u; k < 3u; k++) {
-        uint h = 3u * slot + k;
-        triangles.at[h] = corners[k];
-        if (r == 4u && k == (is_second ? 2u : 1u)) {
-            links.at[h] = is_second ? h - 4u : h + 4u;
-            continue;
-        }
-        uvec2 sides = uvec2(corners[(k + 2u) % 3u], corners[(k + 1u) % 3u]);
-        if (sides.x < sides.y) {
-            uint border = atomicAdd(border_count, 1u);
-            border_starts[border] = uvec2(h, corner << 2 | side(r, is_second, k));
-            border_sides[border] = sides;
-        }
-    }
-    if (corners.x != GHOST && corners.y != GHOST && corners.z != GHOST) {
-        uvec3 at = uvec3(pixels.at[corners.x], pixels.at[corners.y], pixels.at[corners.z]);
-        ivec2 a = ivec2(at.y & 0xffffu, at.y >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);
-        ivec2 b = ivec2(at.z & 0xffffu, at.z >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);
-        if (a.x * b.y <= a.y * b.x) {
-            atomicMin(folded.at[0], slot);
-        }
-    }
 }
 
 void main() {
@@ -241,17 +158,45 @@ void main() {
     }
     barrier();
     uint in_tile = words[WORDS - 1u].w + triangles_of(words[WORDS - 1u].xy);
-    for (uint begin = 0u; begin < in_tile; begin += WORKGROUP) {
-        if (rank == 0u) {
-            border_count = 0u;
-            border_next = 0u;
+    for (uint triangle = rank; triangle < in_tile; triangle += WORKGROUP) {
+        uint corner = places[triangle] >> 1u;
+        bool is_second = (places[triangle] & 1u) != 0u;
+        uvec4 word = words[corner / 32u];
+        uint slot = word.z + triangle - word.w;
+        if (slot >= count) {
+            continue;
         }
-        barrier();
-        if (begin + rank < in_tile) {
-            write_triangle(begin + rank, count, tile);
+        uint x = tile.x + (corner & 63u);
+        uint y = tile.y + corner / 64u;
+        uvec4 c = colors_around(x, y);
+        uint r = repeated(c);
+        uvec3 corners;
+        if (r == 4u) {
+            corners = is_second ? c.xzw : c.xyz;
+        } else {
+            corners = uvec3(c[r + 1u & 3u], c[r + 2u & 3u], c[r + 3u & 3u]);
         }
-        barrier();
-        follow_borders(tile);
-        barrier();
+        [[unroll]] for (uint k = 0u; k < 3u; k++) {
+            uint h = 3u * slot + k;
+            triangles.at[h] = corners[k];
+            if (r == 4u && k == (is_second ? 2u : 1u)) {
+                links.at[h] = is_second ? h - 4u : h + 4u;
+                continue;
+            }
+            uvec2 sides = uvec2(corners[(k + 2u) % 3u], corners[(k + 1u) % 3u]);
+            uint link = follow(x, y, side(r, is_second, k), sides);
+            links.at[h] = link;
+            if (link == GHOST) {
+                atomicMin(lost.at[0], y * (width + 1u) + x);
+            }
+        }
+        if (corners.x != GHOST && corners.y != GHOST && corners.z != GHOST) {
+            uvec3 at = uvec3(pixels.at[corners.x], pixels.at[corners.y], pixels.at[corners.z]);
+            ivec2 a = ivec2(at.y & 0xffffu, at.y >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);
+            ivec2 b = ivec2(at.z & 0xffffu, at.z >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);
+            if (a.x * b.y <= a.y * b.x) {
+                atomicMin(folded.at[0], slot);
+            }
+        }
     }
 }

@@ -56,12 +56,7 @@ define_kernel! {
     /// it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
     /// invocations.
     ///
-    /// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead. Seen from
-    /// its other end they change sides; so each border is followed from one end, where the lower color is on the left, and linked
-    /// both ways. (A diagram without crossings has no corner that a border leaves by another way than it comes back.)
-    ///
-    /// Borders are of very different lengths: the workgroup lists those of as many triangles as it has invocations, and who has
-    /// come to the end of one takes the next.
+    /// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead.
     DualizeWrite(DualizeWriteArgs) = "dualize_write";
     buffers {
         0: read colors: View<'a, u32>,
@@ -82,7 +77,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ff02a58a68b5b76d71788181f801dfbbb443efdee4a16ee8c46dd7e9205675a5";
+    source "5690c1fbfde59451d104022b5efac082b76443bd2d40bc44b1d02fdc534ebd2f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
