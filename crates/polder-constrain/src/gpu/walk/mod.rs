@@ -4,7 +4,7 @@
 //! 2. *Edges.* Every vertex learns some half-edge that leaves it, and how many do. A constraint looks for its other end
 //!    among the neighbors of the end that has fewer, by their numbers alone: then it is an edge and done.
 //! 3. *Walk.* The others walk straight to their other end, one invocation each, and list the vertices that they meet; long
-//!    ones go in [`pieces`](super::pieces), one invocation for each. Signs are always those of the whole line, so that a step
+//!    ones go in [`pieces`], one invocation for each. Signs are always those of the whole line, so that a step
 //!    is one orientation wherever the walk is. A walk that has not ended after some number of steps goes on in the next
 //!    dispatch.
 //! 4. *Chains.* A constraint's chain is its ends and what it met; where chains begin is a prefix sum. From each vertex of a
