@@ -47,9 +47,10 @@ fn run(gpu: &mut Gpu, stage: &Stage, case: &Case<'_>, rounds: Option<[u32; 2]>) 
     let (spokes, degrees) = (spokes.view(), degrees.view());
     // Every other number of sub-constraints walks in pieces, and short ones.
     let (low, high) = case.positions.iter().fold((DVec2::MAX, DVec2::MIN), |(a, b), &p| (a.min(p), b.max(p)));
-    let grid = Grid::over(low, high, case.positions.len()).with_piece_length(if count % 4 == 0 { 100 } else { 300 });
+    let grid =
+        Grid::over(low, high, case.positions.len()).with_piece_length(if count.is_multiple_of(4) { 100 } else { 300 });
     let list = pieces::Buffers::new(&gpu.device, case.positions.len(), PIECES).unwrap();
-    let in_pieces = count % 2 == 0 && !case.positions.is_empty();
+    let in_pieces = count.is_multiple_of(2) && !case.positions.is_empty();
     let pieces = in_pieces.then_some((grid, &list));
     let input = Input { sub_constraints: sub_constraints.view(), count: None, spokes, degrees, pieces };
     let mut recording = gpu.recording();

@@ -6,21 +6,22 @@
 //!    of vertices alone, which finds those that are edges, then by signs.
 //! 2. *Mark.* The others walk, and each triangle that they cross takes the least word by an atomic minimum. The word has the
 //!    owner's priority above and the edges by which the owner comes in and goes out below. Who finds a lower word, or has its
-//!    own replaced, does not own its whole chain; so that is known without counting. Who finds a triangle free lists it: later
-//!    rounds never change an owner, as who crosses the triangles of a flip has crossed those before it.
-//! 3. *Configure.* The triangles that got their owner are looked at, and those beside them along the chain. Pairs that may be
-//!    flipped claim their triangles, by words of 32 bits: the case, then a hash of the first triangle, both of which can be
-//!    found again.
+//!    own replaced, does not own its whole chain; so that is known without counting. Who finds a triangle free stamps
+//!    it: later rounds never change an owner, as who crosses the triangles of a flip has crossed those before it.
+//!    Long walks go in pieces, each of which claims its part.
+//! 3. *Configure.* The triangles that got their owner are looked at, and those beside them along the chain: found by going
+//!    through all triangles, so that pairs stand in the order of triangles and what is nearby is worked on together. Pairs
+//!    that may be flipped claim their triangles, by words of 32 bits: the case, then a hash of the first triangle.
 //! 4. *Inner rounds*, two dispatches each. One flips the pairs that have all they claimed; links outward keep the names that
 //!    the neighbors had before, and a stamp on each triangle says along which edge it was flipped. The other renews these
 //!    links, and looks at what the flips have changed: their triangles, the one before and the one after. All corners and words
 //!    are final by then, and where a link leads follows from the stamp whether it was renewed or not. So what may be flipped
 //!    claims its triangles for the next round at once.
 //! 5. *Tail.* In one workgroup: the inner rounds that are left where few pairs may be flipped, and the turn to the next outer
-//!    round. If nobody walks any more, it goes on for as long as a dispatch may.
+//!    round. Inner rounds for which there is no room go on in the dispatches after, and nobody walks meanwhile.
 //!
 //! Departures from the reference, none of which shows in the result: only pairs are listed, not triangles; a pair that was not
-//! flipped and of which no triangle has changed is not looked at again; the sides of corners are not kept, as the word has them.
+//! flipped and of which no triangle has changed is not looked at again.
 
 use super::pieces::{self, Grid, Walkers};
 use crate::kernels::*;
