@@ -82,7 +82,7 @@ void main() {
         }
     }
     // With few points left to insert, flips are left to stage 5.
-    bool flips = words.at[NEXT] >= words.at[INSERTED] - words.at[INSERTED_BEFORE];
+    bool flips = words.at[NEXT] >= (words.at[INSERTED] - words.at[INSERTED_BEFORE] + 15u) / 16u;
     uint listed = 0u; // a bit for each
     for (uint k = 0u; k < count; k++) {
         bool split;

@@ -186,7 +186,7 @@ fn insert_relink() {
         let mut words = round.words();
         words[NEXT] = losers.len() as u32;
         words[INSERTED] = round.rounds.iter().filter(|&&round| round == 1).count() as u32;
-        let flips = words[NEXT] >= words[INSERTED];
+        let flips = words[NEXT] >= words[INSERTED].div_ceil(16);
         let on = round.on(&mut gpu, &places, &words);
         let room = 6 * round.mesh.slots();
         let (edges, hull_edges) = (gpu.buffer(&vec![0; room]), gpu.buffer(&vec![0; room]));

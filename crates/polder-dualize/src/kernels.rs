@@ -285,7 +285,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "58c5824d3e06917d64a6a70dfedc36e4dc73daf287c4e534f10962acf4784798";
+    source "2eb69b6bc811f3dc5b4c1a70baf08e57d32add394aa7268f6be950af46997f74";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -9,7 +9,8 @@
 //!    first, since they need two triangles; in a triangle chance decides, outside it is the point highest above the hull.
 //! 3. A point that got all it claimed is inserted. The two triangles more that there are then go to the two slots that the
 //!    point brings along: so each slot is known beforehand, and nobody has to count.
-//! 4. If at least as many points still wait as were inserted, one round of flips, of edges around new vertices alone.
+//! 4. If at least a sixteenth as many points still wait as were inserted, one round of flips, of edges around new vertices
+//!    alone.
 //! 5. Ghost flips until the hull is convex again. The other points keep their container as the place from which the next
 //!    walk starts.
 //!
@@ -155,7 +156,7 @@ impl Round<'_> {
         let later = insert_graft(mesh, slots, waiting, &mut places, claims, rounds, round);
         let winners = places.iter().filter(|[place, _]| *place != NONE && place & WON != 0).count();
         out.inserted += winners as u64;
-        let flips = later.len() >= winners;
+        let flips = later.len() >= winners.div_ceil(16);
         let [edges, ghosts] = insert_relink(mesh, slots, waiting, &places, claims, rounds, round, flips);
         edges.iter().for_each(|&h| self.active.push(h));
 
