@@ -2,6 +2,7 @@ use polder_mesh::{Chains, Pslg, Triangulation};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 /// A triangulation, and how it came about.
@@ -218,17 +219,85 @@ fn constraints(triangulation: &Triangulation) -> ConstraintReport {
 
 impl ConstraintReport {
     /// Names the constraints that have no length, and those that repeat others: their chains say so.
+    ///
+    /// Few repeat others, and sorting ten million takes longer than fetching their triangulation does. So a bit for each hash
+    /// tells apart those whose hash is met once; the rest alone is sorted.
     pub(crate) fn name_needless(&mut self, chains: &Chains) {
-        self.zero_length.clear();
-        let mut ends: Vec<([u32; 2], u32)> = Vec::with_capacity(chains.len());
-        for (i, chain) in (0..).zip(chains.iter()) {
-            match *chain {
-                [a, .., b] => ends.push(([a.min(b), a.max(b)], i)),
-                _ => self.zero_length.push(i),
+        let all = || (0..chains.len() as u32).into_par_iter();
+        let ends = |i: u32| match *chains.get(i as usize) {
+            [a, .., b] => Some([a.min(b), a.max(b)]),
+            _ => None,
+        };
+        self.zero_length = all().filter(|&i| ends(i).is_none()).collect();
+        let (met, again) = (Hashes::room_for(chains.len()), Hashes::room_for(chains.len()));
+        all().filter_map(ends).filter(|&pair| met.add(pair)).for_each(|pair| {
+            again.add(pair);
+        });
+        let mut rest: Vec<([u32; 2], u32)> =
+            all().filter_map(|i| ends(i).filter(|&pair| again.has(pair)).map(|pair| (pair, i))).collect();
+        rest.par_sort_unstable();
+        self.repeated = rest.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
+        self.repeated.sort_unstable();
+    }
+}
+
+/// A set of hashes of pairs, to which all threads add.
+struct Hashes {
+    bits: Vec<AtomicU64>,
+    shift: u32,
+}
+
+impl Hashes {
+    /// With eight times as many hashes as there are pairs.
+    fn room_for(pairs: usize) -> Self {
+        let words = pairs.div_ceil(8).next_power_of_two();
+        let bits = (0..words).into_par_iter().map(|_| AtomicU64::new(0)).collect();
+        Self { bits, shift: 58 - words.trailing_zeros() }
+    }
+
+    fn place(&self, [a, b]: [u32; 2]) -> (&AtomicU64, u64) {
+        let hash = (u64::from(a) << 32 | u64::from(b)).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> self.shift;
+        (&self.bits[(hash >> 6) as usize], 1 << (hash & 63))
+    }
+
+    /// Whether it was there before.
+    fn add(&self, pair: [u32; 2]) -> bool {
+        let (word, bit) = self.place(pair);
+        word.fetch_or(bit, Ordering::Relaxed) & bit != 0
+    }
+
+    fn has(&self, pair: [u32; 2]) -> bool {
+        let (word, bit) = self.place(pair);
+        word.load(Ordering::Relaxed) & bit != 0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn needless_constraints_are_named() {
+        let mut chains = Chains::default();
+        let mut report = ConstraintReport::default();
+        report.name_needless(&chains);
+        assert_eq!((report.zero_length.len(), report.repeated.len()), (0, 0));
+        // Every seventh repeats one before, the other way round or along other vertices; every hundredth has no length.
+        let (mut zero_length, mut repeated) = (Vec::new(), Vec::new());
+        for i in 0..20_000 {
+            match (i % 100, i % 7) {
+                (3, _) => {
+                    zero_length.push(i);
+                    chains.push([i]);
+                }
+                (_, 5) if i > 100 && (i - 5) % 100 != 3 => {
+                    repeated.push(i);
+                    chains.push([i - 4, 7, i - 5]);
+                }
+                _ => chains.push([i, i + 1]),
             }
         }
-        ends.par_sort_unstable();
-        self.repeated = ends.windows(2).filter(|w| w[0].0 == w[1].0).map(|w| w[1].1).collect();
-        self.repeated.sort_unstable();
+        report.name_needless(&chains);
+        assert_eq!((report.zero_length, report.repeated), (zero_length, repeated));
     }
 }
