@@ -177,10 +177,10 @@ pub(super) fn room(pslg: &Pslg) -> Triangulation {
     if points < LARGE {
         return Triangulation::default();
     }
-    // Chains of more than two vertices are rare; where there are any, the vertices get room when they come.
+    // Chains of more than two vertices are rare; where there are many, the vertices get room when they come.
     let mut offsets = room_for(constraints + 1);
     offsets.push(0);
-    let chains = Chains::from_parts(offsets, room_for(2 * constraints)).unwrap_or_default();
+    let chains = Chains::from_parts(offsets, room_for(2 * constraints + constraints / 64)).unwrap_or_default();
     let parts = Parts { representatives: room_for(points), chains };
     let made = Triangulation::from_canonical(room_for(2 * points), room_for(2 * points), room_for(2 * points), parts);
     made.unwrap_or_default()
