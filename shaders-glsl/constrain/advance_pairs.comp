@@ -2,6 +2,7 @@
 // back, and looks at the triangles around flips, which claim what they need for the next round.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "insert.glsl"
 #include "appending.glsl"
 #include "candidates.glsl"
 

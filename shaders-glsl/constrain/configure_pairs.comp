@@ -3,6 +3,7 @@
 // are worked on together in all rounds after. Also sums up what pieces of walks crossed.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "insert.glsl"
 #include "appending.glsl"
 #include "candidates.glsl"
 

@@ -2,6 +2,7 @@
 // One that is an edge becomes a constrained one; the others are listed with the half-edge that they cross first.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "insert.glsl"
 #include "appending.glsl"
 #include "count.glsl"
 #include "steps.glsl"

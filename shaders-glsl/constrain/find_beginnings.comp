@@ -6,7 +6,7 @@
 // What lies farther off than half a piece does not serve: pieces would begin out of order, and some walk to the end.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "items.glsl"
+#include "invocations.glsl"
 #include "steps.glsl"
 #include "cells.glsl"
 #include "pieces.glsl"

@@ -4,7 +4,7 @@
 // Counting in a table of the workgroup first, a third of the accesses to memory, took a fifth longer.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "items.glsl"
+#include "invocations.glsl"
 #include "mesh.glsl"
 
 layout(push_constant, std430) uniform Args {

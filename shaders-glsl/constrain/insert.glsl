@@ -3,7 +3,7 @@
 #ifndef INSERT_GLSL
 #define INSERT_GLSL
 
-#include "items.glsl"
+#include "invocations.glsl"
 #include "mesh.glsl"
 #include "pieces.glsl"
 
@@ -18,6 +18,7 @@ BUFFER(SharedU32x2, uvec2, 8, coherent);
 #define WORDS U32
 #define PAIRS U32x2
 #endif
+#include "tallies.glsl"
 
 // The words that steer rounds.
 // Sub-constraints that are not in yet; zero also where nothing can go on.
@@ -132,14 +133,6 @@ int side_of(uint word) {
     uint i = inward(word);
     uint o = outward(word);
     return i == NO_EDGE || o == NO_EDGE ? 0 : o == turned(i, 1u) ? 1 : -1;
-}
-
-// Adds to a number of two words, the low one first.
-void add_wide(WORDS words, uint at, uint value) {
-    uint old = atomicAdd(words.at[at], value);
-    if (old + value < old) {
-        atomicAdd(words.at[at + 1u], 1u);
-    }
 }
 
 #endif

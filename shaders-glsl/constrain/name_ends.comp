@@ -1,7 +1,7 @@
 // Names, 2 of 2: the ends of the constraints as vertices.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "items.glsl"
+#include "invocations.glsl"
 #include "buffers.glsl"
 
 BUFFER(ReadU32x2, uvec2, 8, readonly);

@@ -1,7 +1,7 @@
 // Names, 1 of 2: for each point of the input the vertex that it is or equals.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "items.glsl"
+#include "invocations.glsl"
 #include "buffers.glsl"
 
 layout(push_constant, std430) uniform Args {

@@ -1,7 +1,7 @@
 // Long walks in pieces, 1 of 2: how many pieces each listed walker has, and where its later ones stand.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "items.glsl"
+#include "invocations.glsl"
 #include "mesh.glsl"
 #include "cells.glsl"
 #include "pieces.glsl"

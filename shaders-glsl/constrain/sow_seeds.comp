@@ -2,7 +2,7 @@
 // they come from anywhere in the cell. Of all that lie there any may be the last to come.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "items.glsl"
+#include "invocations.glsl"
 #include "mesh.glsl"
 #include "cells.glsl"
 

@@ -6,7 +6,7 @@
 #ifndef WALK_GLSL
 #define WALK_GLSL
 
-#include "items.glsl"
+#include "invocations.glsl"
 #include "mesh.glsl"
 #include "pieces.glsl"
 

@@ -12,9 +12,7 @@
 #ifndef INSERT_GLSL
 #define INSERT_GLSL
 
-layout(local_size_x_id = 0, local_size_x = 256) in;
-
-#include "groups.glsl"
+#include "invocations.glsl"
 #include "mesh.glsl"
 
 BUFFER(U32x2, uvec2, 8, );
@@ -75,22 +73,6 @@ uvec2 slots_of(uint point, ReadU32x2 freed, ReadU32 words) {
         return freed.at[point];
     }
     return point == 0u ? uvec2(words.at[GIVEN], words.at[GIVEN + 1u]) : uvec2(2u * point - 2u, 2u * point - 1u);
-}
-
-uint item_index() {
-    return group_index() * WORKGROUP + gl_LocalInvocationIndex;
-}
-
-uint item_stride() {
-    return gl_NumWorkGroups.x * gl_NumWorkGroups.y * WORKGROUP;
-}
-
-// Workgroups for so many items: `groups_for` of polder-vulkan.
-uvec3 groups_of(uint items) {
-    uint wanted = items / 256u + uint(items % 256u != 0u);
-    uint rows = wanted / 65535u + uint(wanted % 65535u != 0u);
-    uint columns = rows <= 1u ? wanted : wanted / rows + uint(wanted % rows != 0u);
-    return uvec3(columns, rows, min(rows, 1u));
 }
 
 #endif

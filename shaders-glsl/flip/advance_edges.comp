@@ -3,6 +3,7 @@
 // is known to be illegal.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "rounds.glsl"
 #include "appending.glsl"
 #include "verdict.glsl"
 

@@ -2,9 +2,7 @@
 #ifndef ROUNDS_GLSL
 #define ROUNDS_GLSL
 
-layout(local_size_x_id = 0, local_size_x = 256) in;
-
-#include "groups.glsl"
+#include "invocations.glsl"
 #include "mesh.glsl"
 
 BUFFER(SharedU32, uint, 4, coherent);
@@ -13,6 +11,7 @@ BUFFER(MaybeU32, uint, 4, );
 #ifndef WORDS
 #define WORDS U32
 #endif
+#include "tallies.glsl"
 
 // The words that steer rounds. Illegal edges, of even and of odd rounds: at 4 times the parity.
 #define ILLEGAL_COUNT(PARITY) (4u * (PARITY))
@@ -39,22 +38,6 @@ const uint SCOPE_HULL = 1u;
 
 // The mark of an illegal edge that was flipped.
 const uint WON = 0x80000000u;
-
-uint item_index() {
-    return group_index() * WORKGROUP + gl_LocalInvocationIndex;
-}
-
-uint item_stride() {
-    return gl_NumWorkGroups.x * gl_NumWorkGroups.y * WORKGROUP;
-}
-
-// Adds to a number of two words, the low one first.
-void add_wide(WORDS words, uint at, uint value) {
-    uint old = atomicAdd(words.at[at], value);
-    if (old + value < old) {
-        atomicAdd(words.at[at + 1u], 1u);
-    }
-}
 
 // State is three arrays of `stride` words: by triangle the least priority that claims it, in even and in odd rounds, else NONE;
 // and its stamp, four times the last round that flipped it, plus the edge along which it was. (Three words side by side

@@ -2,6 +2,7 @@
 // repeat, and triangles may be free, `listed` sees to it that each is tested once.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "rounds.glsl"
 #include "appending.glsl"
 #include "verdict.glsl"
 

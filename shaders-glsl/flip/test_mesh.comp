@@ -2,6 +2,7 @@
 // their two triangles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "rounds.glsl"
 #include "appending.glsl"
 #include "verdict.glsl"
 

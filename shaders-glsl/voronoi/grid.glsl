@@ -3,18 +3,11 @@
 #ifndef GRID_GLSL
 #define GRID_GLSL
 
-layout(local_size_x_id = 0, local_size_x = 256) in;
-
 #include "count.glsl"
-#include "groups.glsl"
+#include "invocations.glsl"
 
 const uint NONE = 0xffffffffu;
 const uint UNCOLORED = NONE;
-
-// What this invocation is for, of all items of the dispatch; may lie beyond the end.
-uint item_index() {
-    return group_index() * WORKGROUP + gl_LocalInvocationIndex;
-}
 
 uint index_of(uint pixel, uint width) {
     return (pixel >> 16) * width + (pixel & 0xffffu);

@@ -25,7 +25,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "3325ed15b21a772a8c63b92e7a96d174f7fa78330b8049fe357a9fd174922160";
+    source "a85d6109649901f873d4b4d7931b3b671e26f85d3bc3d3bfbd33d5b4d2cf40f0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -45,7 +45,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "d8c646e15a0180d0e6c3036735bbed5599047b0ef68c53a550752b420fe92b5e";
+    source "486f077da1c4a3226af41be6d263c5f4b77e56c04611c51bfaf53885849c9aa4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -69,7 +69,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ec74ebc9610ae5646a11017fbb8969a53a5c971819ab79b41e961cc8a169d571";
+    source "ead8ed1d5baea2861febb5cc8bb6de3e1de517d4852da39f116e64403c2bca6e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -88,7 +88,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "c1669e46cceb34ed35044b47f825fa153e7d3ae64530b1e838ec040c167517f6";
+    source "69c3cb8ab69fc50dac94343fa66bd1826ca2feb5963fc292dcf47531edc8b564";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -111,7 +111,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "db57d188d45170c4937a6611bc5443ec91731c87a2a2330a3a6743152b889de5";
+    source "9cc7c69e5e28d02644e8ae2701a51750e381e91d9976df45c8e140fae427ddc5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -129,7 +129,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "75b90c1a7a70878e13cf1adec91c0d79d465d3dc7108624989f7964ed9d92323";
+    source "c04b76ec5c9996e52d8bd2591567e47b3a871a4c5df797143fb31a8407d35b03";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -149,7 +149,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "0b40a6d5510f36508839e09eec77efcda8dbd11a42a328d785371507c98b8af6";
+    source "46e220c1c215ce76764612ca312225cfa021fa98436fd9a3f5c95a524124edb2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -171,7 +171,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "3c7360d2b79cda60c7dc44dbf4ca1ec21367ca5896d854f1d5a49ac599a81b74";
+    source "988fc729c95463d739fa3435acaa0807a2e465a555cbb31471346e312cdc4a79";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -192,7 +192,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "5c0599e10d367ab02a2745b96c404dbd3eabfdbc4036e0cc123bfb959fc69f89";
+    source "66b9ea05f49cfd7605904eb2847fde1b4d141cd94f4ebc38c82cae0aef469602";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -212,7 +212,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "2b21d0e608f084f98f8e558141e17d7fd3f8b46942eb81ddb03ea1c789d97abe";
+    source "9c3ed7e01bf3eed208f3a5177df5d3f9b9e5fd2dd947a868648611533cc0efe7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -235,7 +235,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "439a0dc99dc425db088d9e26b8311bed89c75cc84a6881fb7e846bae0da5d4ce";
+    source "2342596f7d77174f8f847a43e82cd147df55ee1519667438724a21d667e89be4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -258,7 +258,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "974e464fa0db294cf9f95dfed4cd3ab9d3e1680e4a0618ba55ed022f63ea010c";
+    source "f5eeaf81b85a2e69bfd815d81e64bc7f90d8f5257d9a1bf2ed60b7326aff2fa6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -279,7 +279,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "032d854e9ff18d8f0a0042040bff3f9e86ea798bbaa559d2b12e0eb1124af27f";
+    source "2d584e97cd7c563490f63288e818766723b3ca878d630de4dd2076dd47117d8b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -305,7 +305,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "e0fb96ab8fa3f45ea368e5bb71ec4bd258f2707f2da26f07195fe7e50ecc995e";
+    source "9fa176bfdb20cab099d74567f6f0739bf6f00eedd94d3a3a36734d9aec4f5113";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -353,7 +353,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "6806c6306da7d726e93c5c71186f7c0602bb1f609a7d4ec6bfa5e324edc638a3";
+    source "5aef042b01f7858068a65c1897cefbf8a4735a28d80f1b6845877d7bb97dc0f2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -372,7 +372,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "4baa0d393c8f7d9af98fa58037e7f82dd6e679bc51381888d1810e4648e6a89d";
+    source "4e9225960f91392c8563deae42d267e25f95caecea32171cccc73ade0e1ad2b7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -401,6 +401,6 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "47c203bc1276d74dbeb2e5268eea69da666db8c9d8308b9f98da1dd8865386b4";
+    source "b183a95ae984d0ae0956a545a88bedd239a41a6c33868ca6f117011702979d57";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

@@ -22,7 +22,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "64840ca21235bcfcaba75fff86da63b76f9d30d2bf6bfe47f42fc1d135216b01";
+    source "1e841cafa22b566b18d4be9ca26fa1ef150c8c82a4aa20de6debafa3753f5f7d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -52,7 +52,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "15141413294ff6622870084b58eb85926c81386d76dd0efb6819477fe87c58b4";
+    source "751332ac8a70fc37e0f6001d93cce1765835afb072797be22af2425003f20516";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -82,7 +82,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "f201f3d547ab9049f3f1e79345a6cde7b52ca62a81f82574918adbaf805da627";
+    source "815f2b54c6e8af549cbdf142a4261d20841de9143a78122a52c47c0e679abfeb";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -117,7 +117,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "1c27773582bbabeae5cf0ca6ed3c27c5263f4777436c97c5a2cbceed9ef8f474";
+    source "89a256ad2e11ac13b33f313ed2985314c4254a94786bb47bb01b2faa19836f24";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -143,7 +143,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "477dcabed8b92e60a4b59d661c5cd36313241d07e484cd5e318bb049394da43b";
+    source "4b50c174c3a987a8c46130a4da9295de3eb5268acef5ff64812ffcedafee8ef6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -167,7 +167,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "b864d064c8e1600fb1e0302c9056dc022b2b6de1d3bfa9217f7b5132f11ab28c";
+    source "8b72c6d0c8e77e33d572b21275826e8c7cc785bfd344db95540fad145762ad3c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -192,7 +192,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "4753b96a23c454b8db707f333eee352da4e650f1ab32794ec825ecbbdbc09d4b";
+    source "1366aa44ea1dd9ce12d32362115f628b5026f1ed748029deb1d086d8767d201e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -217,7 +217,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "0d900b575411547f62578629f74b099543c7c85ef43072fc5a5f54404bce04d9";
+    source "4cabf7df5911530293000ba3fde805c29bdda779c800e7820912bb7fbfdea62d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -249,7 +249,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e0122f167f63918ed9f99103895fbb12f29db1b2e67d848723ce8e57d5cad498";
+    source "f06de22ecd0b7625352df29b0ab6decccb6bdad8ffc71d5fa1f071ec24de6606";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -269,7 +269,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "1889986b5cf0efd55fc81f6ca18eebb9e84e661f01a1844848e019280e2f013d";
+    source "075e096d4c97cb63b9f9e1a41ea3b305044f4ba2897f4dc4430c5c9e930c4cbe";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -288,7 +288,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "9e3c5134b3488de3217505ce4d6361c75363f3d4dce9ccb6f12e7ee9eda8c7e4";
+    source "193997f663dde36ae19d129f472a710a477ebb5c2344bedf6ef48c4ad7286ba7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -323,7 +323,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "0278a4993a3deb84512427b98d8b4dbf7964248eec2eefb53714c7124efb7362";
+    source "c5c5048ff1459f2a5c0b19d26a6e1b012c56c38e9df58ab846c7902bbdd64e52";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -349,7 +349,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "b865b6435388f3001049849c2c49d190229d0cef58e46c6f3e4def449b8a9e34";
+    source "33d7ccbc606d0a84fb7e6b772481a93a961ec557ac89052679b4f4f687b5d3dc";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -377,7 +377,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "7550aaa14aba3e38fef1b7f0779d8bef9880908b086bb27d96949b4edf31f346";
+    source "09e48f709d4424040f6535ef1b5e66b43db509c4a2332b681a30593525192e18";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -402,7 +402,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "2e120a9f4baa363d67a1c07a70abc74beb91eaca8bf6d525114612c3f04d3a2f";
+    source "872ea61b9ebc4e6e0fc8a51a826d08969af30b8dab8f6cc5c08d57d1757daee3";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -422,7 +422,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "10f7170961ccb31f3302c8efffd2468fa6cff9334094eb91e03ccacb08d0d200";
+    source "69bcb53b454e4372df390a1149123d94505a78fc75648a7b86c458972d4c6f05";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -455,7 +455,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "c07fe45130a0df8451a2d29f1bb855b5237ccc69b1c4007af6bcf1561176393e";
+    source "48f92a21c581f9138e8727d24512a1c13289edfd8992ebf020c3706c5d8ca69e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -474,6 +474,6 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "4bfbcb082b66c200fcbf596a2cc860c6f665a703ea20e2066c57ca531d39a1e1";
+    source "96cb58fd22f5e5dc82244679180f765f90f5ee460a871c74debef2a485037c0a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

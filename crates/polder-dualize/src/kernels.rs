@@ -96,7 +96,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "55ae45680d18463dec5bd4c172d615757d338e77dff45ee32061990f9679ba49";
+    source "9d7419d225980b76a85632f4d978c4cb5fa56011ced49e0e7ebe39d9844985bd";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -120,7 +120,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "34da3553f2be02801b543f0fdb6875edcc918f344d6cf421eca2c613be9e3b7b";
+    source "896d6fbdd472cd65a321f754560d2ed91c1e053ff0f9fa8a3d473d25f5bc71e8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -143,7 +143,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "350b5ac2f7a60effae01825a4cfd541926d66fa28294eacbfb8a882caf6a9e01";
+    source "6a0dfe15a0239ed5da00c566bd226dbeea7e578414be9b420a5690c06066c02b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -168,7 +168,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "892ea1c9d252fb2506bd528c8a851d3be7b54d139c43a1076b61a583af232cad";
+    source "211dc9ed5a702dadaf85c0983e98a59a19312a8c49ef12ca67ebbfa119985952";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -195,7 +195,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "243c94dfe7fe343a363a4f921d24a87de59fbf059a2d2dc4ceec1c52acb14d5a";
+    source "b982ff743a1ec8e10a11901e51dddf0522e13d53e6ceada147ee31ecbedfef30";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -217,7 +217,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c7f44fdebab872d4b323cd44145bd194182bcca0010cb2ade9f68da55ff18160";
+    source "25dfb4836178a5f35b2b208d3ab765d779ea2a43a8dbdf25acbac8e8150c337a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -253,7 +253,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "319e9b419c9bec79bff4c901973a2f05fbb4d4aa8979116faf1a7c7c9cc82fc5";
+    source "dd36fd73123123d257c83d4af529f6fec76b035409530cced2eef6082bb6c3dc";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -285,7 +285,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "2eb69b6bc811f3dc5b4c1a70baf08e57d32add394aa7268f6be950af46997f74";
+    source "2a9f663fff7ad118a0278f832d02f3a2e7a29ab034ebc52734d1d426c8458b42";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -301,7 +301,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "a628a369f7d3a4415fcbecb20a7b5385180ea71f75382a88b15bbd2f920d9e50";
+    source "ed750f9e7e76ce3e8b3801be1ded16936764d88302de20f99d7e7a9ee7d0edff";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -326,7 +326,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "affe7c63fe51fc44224c50c10565baf2583b14468cd59b817280cc3ed0bbdd4d";
+    source "19f823289cc4967dda24724a3172ab8c482f4a074f3f08098c1b670669b7a976";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -27,7 +27,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "e08898e7813cbfd390b8bd84eb2ea0f26c2e8f5bdbabc0fdb981bb57f8fd477e";
+    source "a3d67026a7adf5194919180ac33b7edacf162a0ef7cf693a156c9f6f67152017";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -56,7 +56,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "35cafe72cf4fd101e5a63bc864c15f346c2a0525534ebeb849887f3e905b2881";
+    source "2587b1b271096b343e2b491365ec5a2348258a5507a899da317a19e70dd87219";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -86,7 +86,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "aee7a280e12f3c33d3d8b503c541f9705b7a3eb34b66e33fcb0f2f0c9ce658eb";
+    source "cafeb3279d28ed16d6fe25d2fce9a80a5c655f214c597134fa420f1b610acb83";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -147,7 +147,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "a748bd53e874b9a9f7c2d081a729b4311e2036e780c52d6c0e2cea56b3af9a7c";
+    source "ddc86b5d8eb1ee6f2b6398d1015d4b61bcc4688b661fb51fcce2ee50d408cff1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -178,7 +178,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "b20eb40008cd0f7c9aec88b1b73d2f84ed4b503c61f66bf51b510306ab53bdd4";
+    source "312f16dc10185969fa396a65f92c486e03ac6aa30f940cd7a4b3a50b9d3fa23c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -206,6 +206,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "20f71509ca374fa1707ad99a74425a2f74853b8157170e1aa1a74df4f6377c26";
+    source "58ae89f6213cf89d8c9cc74e663f735ade573f9610337318cb855e0b303b2415";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

@@ -16,7 +16,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8b0f653149df66556cedc970d57d97c6d26737fa97ef7ce4d35b358a10cb44ae";
+    source "228bf343cb7973cb2e027969469e94883695e8cb298fe47e06b191d03c82c2f0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -34,7 +34,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ab85c87db05cf45ef3df819738e33ec547874b528e4ac67d2cb73bb0c501566e";
+    source "81ea2f3849fe428af684ed398a1b9c0496cf9397cbe892001f61609db955f68d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -62,7 +62,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "1dd671760b0a6834f81d12f674385fdcb73093f55608eb857cf0c6dac254fea9";
+    source "7f9c9cc8bd6c5f57bf6fe89fcaedc823668d21f4b3950fd3f14407905ec7cb49";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -96,7 +96,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "RADIUS"(1) = 16];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "69939b46c1b0871ed8ec6ac4130ab102d4a3244eeaab74c7939f35ccb3d78ab9";
+    source "b8cd0382fba59e3ff691376b65b3d2505016402a6095c63b5cf13841881c040f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -116,7 +116,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "53c2071ace9c16ff7dc7a1d9f91cffb1f72a5726d0531e29a39738c9cf744c5a";
+    source "c9230dce1e6bcbb92b8a355642836ce6e325a2a4710479803c8199c138bc6962";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -139,7 +139,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "758974983f21467de952647df1b85555ba4d6a438797c43d54a343200e1fa958";
+    source "08d5e4c1bf272eba5a0d8fc36cdb4deb5422633866d868060b9d964f55906ee1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -157,7 +157,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "e0422aa5d9188d17dbf3feac4010cf99265000ab717cf6a715e78771bb43d10d";
+    source "44ec6417afd1bd813909083a406f92c61cf2aee8c0447f641f9d4efa18f8ab6f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -179,7 +179,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "7dde09d2c1422011bbea364ecef930e6254f8772fa66f3a8854614a2d116a508";
+    source "e55fe436fd62005d757a116319352ee2931276e878a7ba23056962aaaf51bab4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -200,7 +200,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "becb9ddbe11b0d749f7b47a20a50f503d2527e69bf8b62c89e7a30fd719066e4";
+    source "9e235a38fe73486c2f4574581ef90f9b439437da79ea2b31bfa84b5708f68177";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -225,7 +225,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "88a19b55b84d352e6f350422743b792d8c32fe726c02d1b074ba78a2ca7b3657";
+    source "6c4f5fab8f190d12948dc33758e2f0499a8046a6f39a422543c771f1e131237f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -245,7 +245,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "f457b591f46d8bdaebdc9b53c968ddd9791fae59d4d87515af77584584bf7957";
+    source "ba449e23d85719ff82edf83c2fc1e1ad63c906a3fbe18b6d8ef5e8b4d7b4c7b7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -273,7 +273,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "6e57aee49321b9c4d7d55368aacb0c0e0ec0be37b8b8f6422f2f4b57b9942a91";
+    source "f290602c1d45facce0129a83d4788070687c20e60d56b06d342891d2b4356a3e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -297,7 +297,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "7c02d3834f7509fe379f8919a31418bdb43dea973441adb8c4154451eb2506be";
+    source "7996cbc232d0d12270b2fc533ba10d008ce2783c64fc91bfdab5300a24a985f6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -319,7 +319,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "f76433f35140486a644ed82828f491a06dd7c18a50ca9054e259340704110181";
+    source "a503a93589ac53fb93521ed73109d4faabceee4e1e44a3692fb7112d42aa00ba";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -342,7 +342,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "294f3ec7d783dbb826e7f720c94e8358817e7b0694a4c2d867b94d3dd106350e";
+    source "30cb1b6c0f08812091bd12012700b665df267603cf8676538daab7096ea0c0b9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -370,7 +370,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "c1123725dd300b92fe910c698c84df8fcc071851917f7cadab1dfb9c550f3097";
+    source "9433e86b3502ac16d033dcb43256c9e133b22ccf39bee3f5b1a5651250cfd829";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -405,7 +405,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ROUNDS"(1) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "b25fd9da2405c07035b7b43bc1830d2294b339ca121c23f226673dd9cd441c48";
+    source "5ea8276bfd513c66596a3a6d2702236c7921082048f5aa7f5bc211975123a0b9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -433,7 +433,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "e79e8036e2243b856b5b2cc861bd02e32cf04385b4340596a8853b08afb7d55c";
+    source "ddae7ab92cfea0da61ed4bf8ddade3fed49bdf064a997d39adb6a539044908b7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -456,7 +456,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "BAND"(1) = 64];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "fed9d9abedfb88faa905b82c92213b07d05dd26125ae7ec34ef7abe3ca8407e0";
+    source "80d9f8830e0cf77a0a818bd564e3bb764e7fe24366c6e474a064dc5a06fd15dd";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -479,6 +479,6 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "7c09430e11b41f1aba1c69f72c8d91c5925ac131fbcc6895650fbdc3e087e070";
+    source "82bb3fbb99b529ac781e6aef7a198b9f420f9fa78386562b11bee1f8e4974443";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

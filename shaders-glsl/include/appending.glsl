@@ -1,8 +1,7 @@
-// Appends what a workgroup found to a list.
+// Appends what a workgroup found to a list. Those that include this say before what WORDS are.
 #ifndef APPENDING_GLSL
 #define APPENDING_GLSL
 
-#include "rounds.glsl"
 #include "workgroup_scan.glsl"
 
 shared uint place_of_group;

@@ -1,11 +1,12 @@
-// Invocations as items of a list, and workgroups for so many.
-#ifndef ITEMS_GLSL
-#define ITEMS_GLSL
+// Invocations as items of a list, and workgroups for so many. For kernels whose workgroups have 256 unless told.
+#ifndef INVOCATIONS_GLSL
+#define INVOCATIONS_GLSL
 
 layout(local_size_x_id = 0, local_size_x = 256) in;
 
 #include "groups.glsl"
 
+// What this invocation is for, of all items of the dispatch; may lie beyond the end.
 uint item_index() {
     return group_index() * WORKGROUP + gl_LocalInvocationIndex;
 }
