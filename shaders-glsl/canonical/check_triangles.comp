@@ -6,8 +6,8 @@
 #include "predicates.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadPoints positions;
     U32 minima;
     U32 broken;
@@ -21,7 +21,7 @@ layout(push_constant, std430) uniform Args {
 
 bool leads_back(uint h) {
     uint g = twin(links, h);
-    if (g / 3u >= min(slot_count.at[0], limit) || links.at[g] != (h | (links.at[h] & CONSTRAINED))) {
+    if (g / 3u >= min(slot_count.at[0], limit) || link_of(links, g) != (h | (link_of(links, h) & CONSTRAINED))) {
         return false;
     }
     // Of two half-edges that lead to each other, one asks for both.

@@ -7,7 +7,7 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
+    ReadRows triangles;
     ReadU32 names;
     U32 counts;
     WriteU32 places;

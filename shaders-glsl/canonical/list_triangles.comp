@@ -4,7 +4,7 @@
 #include "items.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
+    ReadRows triangles;
     ReadU32 names;
     ReadU32 places;
     ReadU32 starts;

@@ -6,8 +6,8 @@
 #include "items.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadU32 names;
     ReadU32 list;
     ReadU32 places;

@@ -7,8 +7,8 @@
 #include "candidates.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    U32 links;
+    ReadRows triangles;
+    Rows links;
     ReadPoints positions;
     U32 state;
     U32x2 pairs;
@@ -35,7 +35,7 @@ void main() {
             Look look = settle(links, state, parity, round, entry, i & 3u);
             found = look.known;
             if (look.a != NONE && found.a == NONE) {
-                found = candidate(U32(triangles), links, positions, state, round, look.a);
+                found = candidate(Rows(triangles), links, positions, state, round, look.a);
             }
         }
         uint place = place_in(words, CANDIDATES + (parity ^ 1u), found.a != NONE);

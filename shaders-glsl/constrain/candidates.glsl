@@ -22,7 +22,7 @@ bool is_convex(Point near, Point right, Point far, Point left) {
 // Whether the pair of triangle A and the next one of its owner may be flipped, and in which case. Links may be those before
 // or after they were renewed.
 Candidate candidate(
-    WORDS triangles, WORDS links, ReadPoints positions, WORDS state, uint round, uint a
+    MESH triangles, MESH links, ReadPoints positions, WORDS state, uint round, uint a
 ) {
     uint word = state.at[OWNED(a)];
     uint out_of = outward(word);
@@ -40,11 +40,11 @@ Candidate candidate(
     int far_side = side_of(next_word);
     bool turns = side * far_side < 0;
     // The pair itself, the one before it, and the one that would then be before it.
-    uint near_corner = triangles.at[h];
+    uint near_corner = apex(triangles, h);
     Point near = point_at(positions, near_corner);
     Point right = point_at(positions, origin(triangles, h));
     Point left = point_at(positions, destination(triangles, h));
-    Point far = point_at(positions, triangles.at[g]);
+    Point far = point_at(positions, apex(triangles, g));
     Point beyond = far;
     int before_side = 0;
     uint b = NO_B;
@@ -75,7 +75,7 @@ Candidate candidate(
             // Across the edge of entry from B: right of the line its origin there.
             Point entry_right = lone_is_right ? lone : near;
             Point entry_left = lone_is_right ? near : lone;
-            near = point_at(positions, triangles.at[entry]);
+            near = point_at(positions, apex(triangles, entry));
             right = entry_right;
             left = entry_left;
             far = third;

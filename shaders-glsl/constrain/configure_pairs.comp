@@ -8,8 +8,8 @@
 #include "candidates.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadPoints positions;
     U32 state;
     ReadU32x4 pieces;
@@ -90,7 +90,7 @@ void main() {
                 }
                 Candidate found = NO_PAIR;
                 if (a != NONE) {
-                    found = candidate(U32(triangles), U32(links), positions, state, NONE, a);
+                    found = candidate(Rows(triangles), Rows(links), positions, state, NONE, a);
                     if (turn == 2u && found.entry.y >> CLAIM_BITS == 0u) {
                         found = NO_PAIR;
                     }

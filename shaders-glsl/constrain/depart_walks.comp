@@ -8,8 +8,8 @@
 #include "steps.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    U32 links;
+    ReadRows triangles;
+    Rows links;
     ReadPoints positions;
     ReadU32x2 sub_constraints;
     MaybeReadU32 counter; // how many there are, else all
@@ -44,17 +44,17 @@ void main() {
                 ends = ends.yx;
             }
             uint spoke = spokes.at[ends.x];
-            h = edge_to(spoke, ends.y, most, triangles, ReadU32(links));
+            h = edge_to(spoke, ends.y, most, triangles, ReadRows(links));
             if (h != NONE) {
                 uint g = twin(links, h);
-                links.at[h] = g | CONSTRAINED;
-                links.at[g] = h | CONSTRAINED;
+                set_link(links, h, g | CONSTRAINED);
+                set_link(links, g, h | CONSTRAINED);
                 atomicAdd(inserted, 1u);
             } else {
                 Walker walker = turn_from(spoke, point_at(positions, ends.x), point_at(positions, ends.y));
                 uint event = TURNS;
                 for (uint step = 0u; step <= most && event == TURNS; step++) {
-                    event = advance(walker, triangles, ReadU32(links), positions);
+                    event = advance(walker, triangles, ReadRows(links), positions);
                 }
                 walks = event == LEAVES;
                 h = walker.h;

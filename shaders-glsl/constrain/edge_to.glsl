@@ -5,7 +5,7 @@
 #include "mesh.glsl"
 
 // The half-edge to a vertex among those that leave the origin of `spoke`, or NONE. `most` bounds the turn.
-uint edge_to(uint spoke, uint to, uint most, ReadU32 triangles, ReadU32 links) {
+uint edge_to(uint spoke, uint to, uint most, ReadRows triangles, ReadRows links) {
     uint h = spoke;
     uint w = destination(triangles, h);
     for (uint turn = 0u; turn < most; turn++) {

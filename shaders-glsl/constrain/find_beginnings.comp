@@ -12,8 +12,8 @@
 #include "pieces.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadPoints positions;
     ReadU32x2 ends;
     ReadU32 spokes;

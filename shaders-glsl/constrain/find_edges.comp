@@ -7,8 +7,8 @@
 #include "edge_to.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadU32x2 ends;
     ReadU32 spokes;
     ReadU32 degrees;

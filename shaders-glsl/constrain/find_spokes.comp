@@ -8,7 +8,7 @@
 #include "mesh.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
+    ReadRows triangles;
     ReadU32 slots;
     WriteU32 spokes; // by vertex; all NONE before
     U32 degrees;     // all zero before

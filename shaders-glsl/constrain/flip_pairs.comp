@@ -5,8 +5,8 @@
 #include "pairs.glsl"
 
 layout(push_constant, std430) uniform Args {
-    U32 triangles;
-    U32 links;
+    Rows triangles;
+    Rows links;
     U32 state;
     U32x2 pairs;
     U32 spokes;

@@ -13,9 +13,11 @@ BUFFER(SharedU32x2, uvec2, 8, coherent);
 
 #ifdef COHERENT
 #define WORDS SharedU32
+#define MESH SharedRows
 #define PAIRS SharedU32x2
 #else
 #define WORDS U32
+#define MESH Rows
 #define PAIRS U32x2
 #endif
 #include "tallies.glsl"

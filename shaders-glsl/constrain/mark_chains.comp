@@ -6,8 +6,8 @@
 #include "predicates.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadPoints positions;
     ReadU32x2 sub_constraints;
     ReadU32 degrees;
@@ -96,7 +96,7 @@ void main() {
             // No walk crosses an edge twice.
             uint most = 2u * stride;
             for (uint step = 0u; step < most; step++) {
-                uint g = links.at[h];
+                uint g = link_of(links, h);
                 if (owns) {
                     uint edge = h % 3u;
                     own(s, mine | (reversed ? entered << 2 | edge : edge << 2 | entered), h / 3u, stamp);

@@ -7,8 +7,8 @@
 #include "candidates.glsl"
 
 layout(push_constant, std430) uniform Args {
-    SharedU32 triangles;
-    SharedU32 links;
+    SharedRows triangles;
+    SharedRows links;
     ReadPoints positions;
     SharedU32 state;
     SharedU32x2 pairs;

@@ -31,7 +31,7 @@ void claim(WORDS state, uint parity, Candidate pair) {
 
 // Whether a candidate has all that it claimed. Who does not have the first triangle may read what another changes, and
 // does not look at it.
-bool wins(WORDS links, WORDS state, uint parity, uvec2 entry) {
+bool wins(MESH links, WORDS state, uint parity, uvec2 entry) {
     uint key = key_of(entry);
     uint b = entry.y & NO_B;
     if (state.at[CLAIM(entry.x / 3u, parity)] != key || (b != NO_B && state.at[CLAIM(b, parity)] != key)) {
@@ -47,7 +47,7 @@ bool is_flipped(uint stamp, uint round) {
 // Flips h, from A to C, both of the same owner; nobody else touches them. Outer links keep the names that they had before the
 // round. Whether the new edge is the owner itself.
 bool flip_pair(
-    WORDS triangles, WORDS links, WORDS state, WORDS spokes, WORDS degrees, uint round, uint h
+    MESH triangles, MESH links, WORDS state, WORDS spokes, WORDS degrees, uint round, uint h
 ) {
     uint g = twin(links, h);
     uint t = h / 3u;
@@ -58,23 +58,23 @@ bool flip_pair(
     uint h2 = prev_edge(h);
     uint g1 = next_edge(g);
     uint g2 = prev_edge(g);
-    uint near = triangles.at[h];
-    uint right = triangles.at[h1];
-    uint left = triangles.at[h2];
-    uint far = triangles.at[g];
-    uint t_outer = links.at[h1];
-    uint u_outer = links.at[g1];
+    uint near = apex(triangles, h);
+    uint right = apex(triangles, h1);
+    uint left = apex(triangles, h2);
+    uint far = apex(triangles, g);
+    uint t_outer = link_of(links, h1);
+    uint u_outer = link_of(links, g1);
     uint word = state.at[OWNED(t)];
     int near_side = side_of(word);
     int far_side = side_of(state.at[OWNED(u)]);
     bool zero = near_side == 0 && far_side == 0;
-    triangles.at[h2] = far;
-    triangles.at[g2] = near;
-    links.at[h] = u_outer;
-    links.at[g] = t_outer;
+    set_apex(triangles, h2, far);
+    set_apex(triangles, g2, near);
+    set_link(links, h, u_outer);
+    set_link(links, g, t_outer);
     uint mark = zero ? CONSTRAINED : 0u;
-    links.at[h1] = g1 | mark;
-    links.at[g1] = h1 | mark;
+    set_link(links, h1, g1 | mark);
+    set_link(links, g1, h1 | mark);
     state.at[STAMP(t)] = ~(round << 2 | k);
     state.at[STAMP(u)] = ~(round << 2 | j);
     // Corners from k on: near, right, far in t; from j on far, left, near in u.
@@ -99,7 +99,7 @@ bool flip_pair(
 
 // The other side of a half-edge after the flips of a round, whether its link has been renewed or not. The outer edge behind
 // a flipped one went over to the other triangle.
-uint resolved(WORDS links, WORDS state, uint round, uint side) {
+uint resolved(MESH links, WORDS state, uint round, uint side) {
     uint outer = twin(links, side);
     if (round == NONE) {
         return outer;
@@ -116,8 +116,8 @@ uint resolved(WORDS links, WORDS state, uint round, uint side) {
 }
 
 // Renews the link of an outer side of a flip.
-void renew(WORDS links, WORDS state, uint round, uint side) {
-    uint outer = links.at[side];
+void renew(MESH links, WORDS state, uint round, uint side) {
+    uint outer = link_of(links, side);
     uint mark = outer & CONSTRAINED;
     outer &= HALF_EDGE;
     uint stamp = stamp_of(state, outer / 3u);
@@ -125,9 +125,9 @@ void renew(WORDS links, WORDS state, uint round, uint side) {
         if (outer == next_edge(outer - outer % 3u + (stamp & 3u))) {
             outer = prev_edge(twin(links, outer));
         }
-        links.at[side] = outer | mark;
+        set_link(links, side, outer | mark);
     } else {
-        links.at[outer] = side | mark;
+        set_link(links, outer, side | mark);
     }
 }
 
@@ -147,7 +147,7 @@ struct Look {
 
 // Renews a link around a flip, gives claimed triangles back, and finds what to look at again: the two triangles of a flip,
 // the one before and the one after them; and the first triangle of a pair that was not flipped.
-Look settle(WORDS links, WORDS state, uint parity, uint round, uvec2 entry, uint lane) {
+Look settle(MESH links, WORDS state, uint parity, uint round, uvec2 entry, uint lane) {
     Look look = Look(NONE, NO_PAIR);
     uint h = entry.x & HALF_EDGE;
     uint b = entry.y & NO_B;

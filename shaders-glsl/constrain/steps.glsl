@@ -55,7 +55,7 @@ Walker turn_from(uint spoke, Point a, Point b) {
 }
 
 // The same walk goes on from the vertex that this event has led to.
-void turn_again(inout Walker walker, uint event, ReadU32 links) {
+void turn_again(inout Walker walker, uint event, ReadRows links) {
     // First backward along the edge, or to the corner on the right: the way on is among the next spokes.
     walker.h = twin(links, event == ALONG ? walker.h : next_edge(walker.h));
     walker.start = walker.h;
@@ -78,7 +78,7 @@ bool lies_ahead(Point v, Point w, Point a, Point b) {
 }
 
 // One step, with one sign.
-uint advance(inout Walker walker, ReadU32 triangles, ReadU32 links, ReadPoints positions) {
+uint advance(inout Walker walker, ReadRows triangles, ReadRows links, ReadPoints positions) {
     uint h = walker.h;
     if (walker.state == CROSSING) {
         h = twin(links, h);

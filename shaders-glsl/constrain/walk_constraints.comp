@@ -6,8 +6,8 @@
 #extension GL_KHR_shader_subgroup_ballot : require
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadPoints positions;
     ReadU32x2 ends;
     ReadU32 spokes;

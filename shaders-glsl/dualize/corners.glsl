@@ -6,8 +6,7 @@
 #define CORNERS_GLSL
 
 #include "buffers.glsl"
-
-const uint GHOST = 0xffffffffu;
+#include "mesh.glsl"
 
 uint words_in_row(uint width) {
     return width / 32u + 1u;

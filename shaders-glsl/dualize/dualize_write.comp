@@ -17,8 +17,8 @@ layout(push_constant, std430) uniform Args {
     ReadU32x2 vertices;
     ReadU32 first; // slots of the words of corners
     ReadU32 slots; // how many
-    WriteU32 triangles;
-    WriteU32 links;
+    WriteRows triangles;
+    WriteRows links;
     U32 lost;   // the first corner that a border leaves and leads nowhere
     U32 folded; // the first finite triangle that is not counterclockwise
     uint width;
@@ -178,14 +178,14 @@ void main() {
         }
         [[unroll]] for (uint k = 0u; k < 3u; k++) {
             uint h = 3u * slot + k;
-            triangles.at[h] = corners[k];
+            set_apex(triangles, h, corners[k]);
             if (r == 4u && k == (is_second ? 2u : 1u)) {
-                links.at[h] = is_second ? h - 4u : h + 4u;
+                set_link(links, h, is_second ? h - 4u : h + 4u);
                 continue;
             }
             uvec2 sides = uvec2(corners[(k + 2u) % 3u], corners[(k + 1u) % 3u]);
             uint link = follow(x, y, side(r, is_second, k), sides);
-            links.at[h] = link;
+            set_link(links, h, link);
             if (link == GHOST) {
                 atomicMin(lost.at[0], y * (width + 1u) + x);
             }

@@ -6,7 +6,7 @@
 #extension GL_KHR_shader_subgroup_arithmetic : require
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
+    ReadRows triangles;
     ReadU32 slots;
     WriteU32 half_edges; // by vertex; all NONE before
     WriteU32 vertex_of;

@@ -6,7 +6,7 @@
 #include "insert.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 links;
+    ReadRows links;
     ReadU32x2 waiting;
     U32 places;
     U32 claims;

@@ -7,8 +7,8 @@
 #include "predicates.glsl"
 
 layout(push_constant, std430) uniform Args {
-    U32 triangles;
-    U32 links;
+    Rows triangles;
+    Rows links;
     ReadPoints positions;
     ReadU32 half_edges;
     U32 ends; // two for each workgroup of the first pass
@@ -35,12 +35,8 @@ void lay(uint a, uint b) {
     uint gives = a + b - keeps;
     uint s = 2u * keeps - 2u;
     uint t = s + 1u;
-    triangles.at[3u * s] = b;
-    triangles.at[3u * s + 1u] = a;
-    triangles.at[3u * s + 2u] = GHOST;
-    triangles.at[3u * t] = a;
-    triangles.at[3u * t + 1u] = b;
-    triangles.at[3u * t + 2u] = GHOST;
+    set_corners(triangles, s, b, a, GHOST);
+    set_corners(triangles, t, a, b, GHOST);
     link(links, 3u * s + 2u, 3u * t + 2u);
     link(links, 3u * s, 3u * t + 1u);
     link(links, 3u * s + 1u, 3u * t);

@@ -8,8 +8,8 @@
 #include "workgroup_scan.glsl"
 
 layout(push_constant, std430) uniform Args {
-    U32 triangles;
-    U32 links;
+    Rows triangles;
+    Rows links;
     U32x2 waiting;
     ReadU32x2 freed;
     U32 places;
@@ -22,13 +22,11 @@ layout(push_constant, std430) uniform Args {
 shared uint base_of_group;
 
 void put(uint t, uvec3 corner) {
-    triangles.at[3u * t] = corner.x;
-    triangles.at[3u * t + 1u] = corner.y;
-    triangles.at[3u * t + 2u] = corner.z;
+    set_corners(triangles, t, corner.x, corner.y, corner.z);
 }
 
 // Rows of two slots; most are neighbors, which makes half as many stores.
-void put_pair(U32 rows, uint s, uint u, uvec3 first, uvec3 second) {
+void put_pair(Rows rows, uint s, uint u, uvec3 first, uvec3 second) {
     if (u == s + 1u && (s & 1u) == 0u) {
         U32x2 pairs = U32x2(rows);
         uint at = 3u * (s >> 1);
@@ -47,9 +45,9 @@ void put_pair(U32 rows, uint s, uint u, uvec3 first, uvec3 second) {
 void split_triangle(uint t, uint p, uint s, uint u) {
     uvec3 corner = corners(triangles, t);
     uvec2 outer = uvec2(twin(links, 3u * t), twin(links, 3u * t + 1u));
-    triangles.at[3u * t + 2u] = p;
-    links.at[3u * t] = 3u * s + 1u;
-    links.at[3u * t + 1u] = 3u * u;
+    set_apex(triangles, 3u * t + 2u, p);
+    set_link(links, 3u * t, 3u * s + 1u);
+    set_link(links, 3u * t + 1u, 3u * u);
     put_pair(triangles, s, u, uvec3(corner.y, corner.z, p), uvec3(corner.z, corner.x, p));
     put_pair(links, s, u, uvec3(3u * u + 1u, 3u * t, outer.x), uvec3(3u * t + 1u, 3u * s, outer.y));
     claims.at[CLAIM * t + SPLIT] = p << 2 | 3u;
@@ -59,9 +57,9 @@ void split_triangle(uint t, uint p, uint s, uint u) {
 void split_side(uint side, uint p, uint s) {
     uint outer = twin(links, next_edge(side));
     put(s, uvec3(apex(triangles, side), p, destination(triangles, side)));
-    triangles.at[prev_edge(side)] = p;
+    set_apex(triangles, prev_edge(side), p);
     link(links, next_edge(side), 3u * s + 2u);
-    links.at[3u * s + 1u] = outer;
+    set_link(links, 3u * s + 1u, outer);
     claims.at[CLAIM * (side / 3u) + SPLIT] = p << 2 | side % 3u;
 }
 

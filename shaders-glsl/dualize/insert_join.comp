@@ -7,8 +7,8 @@
 #include "predicates.glsl"
 
 layout(push_constant, std430) uniform Args {
-    U32 triangles;
-    U32 links;
+    Rows triangles;
+    Rows links;
     ReadPoints positions;
     ReadU32 slots;
     ReadU32x2 freed;
@@ -26,9 +26,7 @@ uint of_priority(uint priority) {
 }
 
 void put(uint t, uvec3 corner) {
-    triangles.at[3u * t] = corner.x;
-    triangles.at[3u * t + 1u] = corner.y;
-    triangles.at[3u * t + 2u] = corner.z;
+    set_corners(triangles, t, corner.x, corner.y, corner.z);
 }
 
 void join(uint t, uint apex_point, uvec2 own) {
@@ -47,7 +45,7 @@ void join(uint t, uint apex_point, uvec2 own) {
     uint to_w = prev_edge(h);
     uint behind = twin(links, to_u);
     uint ahead = twin(links, to_w);
-    triangles.at[h] = apex_point;
+    set_apex(triangles, h, apex_point);
     // Where the ring of ghost triangles turns back, the next one is that of the same edge, seen from behind.
     if (apex(triangles, behind) == w) {
         put(own.x, uvec3(apex_point, u, GHOST));

@@ -15,8 +15,8 @@
 #include "insert_key.glsl"
 
 layout(push_constant, std430) uniform Args {
-    U32 triangles;
-    U32 links;
+    Rows triangles;
+    Rows links;
     ReadPoints positions;
     ReadU32x2 waiting;
     ReadU32x2 freed;

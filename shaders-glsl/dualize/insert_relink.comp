@@ -8,8 +8,8 @@
 #include "workgroup_scan.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    U32 links;
+    ReadRows triangles;
+    Rows links;
     ReadU32x2 waiting;
     ReadU32x2 freed;
     ReadU32 places;
@@ -46,7 +46,7 @@ uint renamed(uint g, out bool split) {
     }
     // The lower half-edge of the edge, as the point's place has it, got the first slot, and its new twin is in the second.
     uint side = g - k + edge;
-    bool lower = links.at[side] == 3u * own.y;
+    bool lower = link_of(links, side) == 3u * own.y;
     return 3u * (lower ? own.x : own.y) + 1u;
 }
 
@@ -76,7 +76,7 @@ void main() {
         outer = uvec4(3u * t + 2u, 3u * own.x + 2u, 3u * own.y + 2u, NONE);
         count = 3u;
         if (on_edge) {
-            uint g = links.at[3u * own.x];
+            uint g = link_of(links, 3u * own.x);
             outer = uvec4(prev_edge(h), prev_edge(g), 3u * own.x + 1u, 3u * own.y + 1u);
             count = 4u;
         }
@@ -87,10 +87,10 @@ void main() {
     for (uint k = 0u; k < count; k++) {
         bool split;
         uint side = outer[k];
-        uint other = renamed(links.at[side] & HALF_EDGE, split);
-        links.at[side] = other;
+        uint other = renamed(link_of(links, side) & HALF_EDGE, split);
+        set_link(links, side, other);
         if (!split) {
-            links.at[other] = side;
+            set_link(links, other, side);
         }
         // An edge between two that were split is on the list by its lower side.
         if (flips && (!split || side < other) && origin(triangles, side) != GHOST && destination(triangles, side) != GHOST) {

@@ -5,7 +5,7 @@
 #include "count.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
+    ReadRows triangles;
     ReadU32 half_edges;
     ReadU32 points;
     ReadU32 starts;
@@ -32,7 +32,7 @@ void main() {
         uvec3 groups = groups_of(first);
         for (uint k = 0u; k < 3u; k++) {
             words.at[GROUPS + k] = groups[k];
-            words.at[CENTER + k] = slot == NONE ? 0u : triangles.at[3u * slot + k];
+            words.at[CENTER + k] = slot == NONE ? 0u : apex(triangles, 3u * slot + k);
         }
         words.at[WAITING] = first;
         words.at[NEXT] = 0u;

@@ -6,8 +6,8 @@
 #include "center.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     Points positions;
     U32 state;
     U32 pinned;

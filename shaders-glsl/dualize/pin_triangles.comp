@@ -6,7 +6,7 @@
 #include "predicates.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
+    ReadRows triangles;
     ReadPoints positions;
     U32 state;
     U32 pinned;   // half-edges, each out of a pinned site

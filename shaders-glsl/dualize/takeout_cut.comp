@@ -11,8 +11,8 @@
 #include "predicates.glsl"
 
 layout(push_constant, std430) uniform Args {
-    U32 triangles;
-    U32 links;
+    Rows triangles;
+    Rows links;
     ReadPoints positions;
     U32 state;
     U32 winners;  // half-edges to heirs
@@ -91,9 +91,9 @@ void drop_before(uint c) {
 
 // The outer edge of the triangle of spoke c goes to `to`.
 void place_edge(uint c, uint to) {
-    links.at[to] = across[c];
+    set_link(links, to, across[c]);
     if ((inside >> c & 1u) != 0u) {
-        links.at[across[c]] = to;
+        set_link(links, across[c], to);
     } else {
         places[c] = to;
     }
@@ -113,7 +113,7 @@ bool cut_small(uint v, uint degree, uint ghost) {
         [[unroll]] for (uint k = 0u; k < STEPS; k++) {
             uint i = min(first + k, degree - 1u);
             at_end[k] = positions.at[ends[i] < DELETED ? ends[i] : v];
-            beyond[k] = links.at[next_edge(spokes[i])];
+            beyond[k] = link_of(links, next_edge(spokes[i]));
         }
         [[unroll]] for (uint k = 0u; k < STEPS; k++) {
             where[first + k] = at_end[k];
@@ -183,8 +183,8 @@ bool cut_small(uint v, uint degree, uint ghost) {
         uint c = bits(cuts, k);
         uint h = spokes[c];
         uint g = prev_edge(spokes[bits(preceding, c)]);
-        triangles.at[prev_edge(g)] = ends[bits(end_of, bits(following, c))];
-        triangles.at[prev_edge(h)] = ends[bits(end_of, bits(preceding, c))];
+        set_apex(triangles, prev_edge(g), ends[bits(end_of, bits(following, c))]);
+        set_apex(triangles, prev_edge(h), ends[bits(end_of, bits(preceding, c))]);
         place_edge(c, g);
         across[c] = next_edge(g);
         inside |= 1u << c;
@@ -198,7 +198,7 @@ bool cut_small(uint v, uint degree, uint ghost) {
     uint next = bits(following, c);
     uint previous = bits(preceding, c);
     if (is_inner) {
-        triangles.at[next_edge(h)] = ends[bits(end_of, previous)];
+        set_apex(triangles, next_edge(h), ends[bits(end_of, previous)]);
         place_edge(next, prev_edge(h));
         place_edge(previous, h);
         free_two(v, spokes[next] / 3u, spokes[previous] / 3u);
@@ -206,7 +206,7 @@ bool cut_small(uint v, uint degree, uint ghost) {
         uint first = bits(following, next);
         uint spoke = first;
         for (uint k = 0u; k < degree && spoke != c; k++) {
-            triangles.at[next_edge(spokes[spoke])] = GHOST;
+            set_apex(triangles, next_edge(spokes[spoke]), GHOST);
             spoke = bits(following, spoke);
         }
         place_edge(c, prev_edge(spokes[previous]));
@@ -252,9 +252,9 @@ bool is_wide_first(uint k, uint other) {
 
 // The outer edge of the triangle of spoke c goes to `to`.
 void place_wide(uint c, uint to) {
-    links.at[to] = wide_across[c];
+    set_link(links, to, wide_across[c]);
     if ((wide_flags[c] & INSIDE) != 0u) {
-        links.at[wide_across[c]] = to;
+        set_link(links, wide_across[c], to);
     } else {
         wide_places[c] = to;
     }
@@ -315,7 +315,7 @@ bool cut_wide(uint v, uint start) {
         uint end = destination(triangles, h);
         wide_ends[k] = end;
         wide_where[k] = positions.at[end < DELETED ? end : v];
-        wide_across[k] = links.at[next_edge(h)];
+        wide_across[k] = link_of(links, next_edge(h));
         wide_places[k] = next_edge(h);
         wide_next[k] = k + 1u == degree ? 0u : k + 1u;
         wide_previous[k] = k == 0u ? degree - 1u : k - 1u;
@@ -371,11 +371,11 @@ bool cut_wide(uint v, uint start) {
                 uint before = wide_previous[a];
                 uint h = wide_spokes[c];
                 uint g = prev_edge(wide_spokes[a]);
-                triangles.at[prev_edge(g)] = wide_ends[b];
-                triangles.at[prev_edge(h)] = wide_ends[a];
-                links.at[g] = wide_across[c];
+                set_apex(triangles, prev_edge(g), wide_ends[b]);
+                set_apex(triangles, prev_edge(h), wide_ends[a]);
+                set_link(links, g, wide_across[c]);
                 if ((wide_flags[c] & INSIDE) != 0u) {
-                    links.at[wide_across[c]] = g;
+                    set_link(links, wide_across[c], g);
                 } else {
                     wide_places[c] = g;
                 }
@@ -410,7 +410,7 @@ bool cut_wide(uint v, uint start) {
         if (is_inner && left != 3u) {
             note_broken(words, v);
         } else if (is_inner) {
-            triangles.at[next_edge(h)] = wide_ends[previous];
+            set_apex(triangles, next_edge(h), wide_ends[previous]);
             place_wide(next, prev_edge(h));
             place_wide(previous, h);
             free_two(v, wide_spokes[next] / 3u, wide_spokes[previous] / 3u);
@@ -418,7 +418,7 @@ bool cut_wide(uint v, uint start) {
             uint first = wide_next[next];
             uint spoke = first;
             for (uint k = 0u; k < degree && spoke != c; k++) {
-                triangles.at[next_edge(wide_spokes[spoke])] = GHOST;
+                set_apex(triangles, next_edge(wide_spokes[spoke]), GHOST);
                 spoke = wide_next[spoke];
             }
             place_wide(c, prev_edge(wide_spokes[previous]));
@@ -441,22 +441,22 @@ bool cut_wide(uint v, uint start) {
 
 // The outer edge, or the edge of an ear, at `from` goes to `to`, in another triangle of the same star.
 void move_edge(uint from, uint to) {
-    uint beyond = links.at[from];
+    uint beyond = link_of(links, from);
     uint entry = edge_of.at[from / 3u];
-    links.at[to] = beyond;
+    set_link(links, to, beyond);
     if (edges.at[entry].y == from) {
         edges.at[entry].y = to;
     } else {
-        links.at[beyond] = to;
+        set_link(links, beyond, to);
     }
 }
 
 void flip_spoke(uint h, uint g) {
     uint h1 = next_edge(h);
     uint g1 = next_edge(g);
-    uint before = links.at[g1];
-    triangles.at[prev_edge(h)] = triangles.at[g];
-    triangles.at[prev_edge(g)] = triangles.at[h];
+    uint before = link_of(links, g1);
+    set_apex(triangles, prev_edge(h), apex(triangles, g));
+    set_apex(triangles, prev_edge(g), apex(triangles, h));
     link(links, h, before);
     move_edge(h1, g);
     link(links, h1, g1);
@@ -465,7 +465,7 @@ void flip_spoke(uint h, uint g) {
 void merge(uint v, uint h) {
     uint ccw = rotate_ccw(links, h);
     uint cw = rotate_cw(links, h);
-    triangles.at[next_edge(h)] = destination(triangles, cw);
+    set_apex(triangles, next_edge(h), destination(triangles, cw));
     move_edge(next_edge(ccw), prev_edge(h));
     move_edge(next_edge(cw), h);
     free_two(v, ccw / 3u, cw / 3u);
@@ -477,7 +477,7 @@ void to_infinity(uint v, uint h) {
     uint end = twin(links, h);
     uint spoke = start;
     for (uint step = 0u; spoke != h && step < MOST_TRIANGLES_OF_STAR; step++) {
-        triangles.at[next_edge(spoke)] = GHOST;
+        set_apex(triangles, next_edge(spoke), GHOST);
         spoke = rotate_ccw(links, spoke);
     }
     move_edge(next_edge(h), end);

@@ -6,8 +6,8 @@
 #include "shift.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadU32 state;
     ReadU32 waiting;  // sites
     WriteU32 later;   // sites, for the next turn

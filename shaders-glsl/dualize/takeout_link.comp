@@ -5,8 +5,8 @@
 #include "takeout.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    U32 links;
+    ReadRows triangles;
+    Rows links;
     U32 state;
     ReadU32 edge_of;
     OuterEdges edges;
@@ -18,12 +18,12 @@ void main() {
     uint count = words.at[OUT_EDGES + round];
     for (uint i = first_item(); i < count; i += item_stride()) {
         uint h = edges.at[i].y;
-        uint across = links.at[h];
+        uint across = link_of(links, h);
         uint entry = edge_of.at[across / 3u];
         if (entry < count && edges.at[entry].x == across / 3u) {
-            links.at[h] = edges.at[entry].y;
+            set_link(links, h, edges.at[entry].y);
         } else {
-            links.at[across] = h;
+            set_link(links, across, h);
         }
         uint v = origin(triangles, h);
         if (v != GHOST && (state.at[v] & PINNED) != 0u) {

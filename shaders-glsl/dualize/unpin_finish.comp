@@ -5,7 +5,7 @@
 #include "shift.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
+    ReadRows triangles;
     U32 state;
     U32 all;
     U32 stuck;

@@ -8,8 +8,8 @@
 #include "verdict.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    U32 links;
+    ReadRows triangles;
+    Rows links;
     ReadPoints positions;
     U32 state;
     ReadU32 illegal; // of this round
@@ -49,7 +49,7 @@ void main() {
             uint k = i & 3u;
             if ((h & WON) != 0u) {
                 h &= HALF_EDGE;
-                uint g = prev_edge(links.at[next_edge(h)]);
+                uint g = prev_edge(link_of(links, next_edge(h)));
                 if (k < 2u) {
                     state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
                 }

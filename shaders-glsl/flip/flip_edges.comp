@@ -5,8 +5,8 @@
 #include "rounds.glsl"
 
 layout(push_constant, std430) uniform Args {
-    U32 triangles;
-    U32 links;
+    Rows triangles;
+    Rows links;
     U32 state;
     U32 illegal;
     MaybeReadU32 edges; // the list that was tested, to be emptied
@@ -35,7 +35,7 @@ void main() {
         uint h = illegal.at[i];
         uint mine = priority(h);
         if (state.at[CLAIM(h, parity)] == mine) {
-            uint g = links.at[h];
+            uint g = link_of(links, h);
             if (state.at[CLAIM(g, parity)] == mine) {
                 flip_pair(triangles, links, state, stride, round, h, g);
                 illegal.at[i] = h | WON;

@@ -3,12 +3,12 @@
 // edges of a round's list lie in shared memory with their twins, the others in the lists of the wide kernels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#define WORDS SharedU32
+#define COHERENT
 #include "verdict.glsl"
 
 layout(push_constant, std430) uniform Args {
-    SharedU32 triangles;
-    SharedU32 links;
+    SharedRows triangles;
+    SharedRows links;
     ReadPoints positions;
     SharedU32 state;
     SharedU32 illegal_0; // of even rounds
@@ -50,7 +50,7 @@ void main() {
     for (uint i = rank; i < min(count, NEAR); i += WORKGROUP) {
         uint h = illegal.at[i];
         near_lower[parity * NEAR + i] = h;
-        near_upper[parity * NEAR + i] = links.at[h];
+        near_upper[parity * NEAR + i] = link_of(links, h);
     }
     if (rank == 0u) {
         flips = 0u;
@@ -73,7 +73,7 @@ void main() {
             uint h = near ? near_lower[parity * NEAR + i] : illegal.at[i];
             uint mine = priority(h);
             // Whoever does not have the first triangle may read what another changes, and does not look at it.
-            uint g = near ? near_upper[parity * NEAR + i] : links.at[h] & HALF_EDGE;
+            uint g = near ? near_upper[parity * NEAR + i] : link_of(links, h) & HALF_EDGE;
             bool first = state.at[CLAIM(h, parity)] == mine;
             bool second = state.at[CLAIM(g, parity)] == mine;
             if (first && second) {
@@ -96,7 +96,7 @@ void main() {
             handed.some = false;
             if ((h & WON) != 0u) {
                 h &= HALF_EDGE;
-                uint g = near ? near_upper[parity * NEAR + (i >> 2)] : prev_edge(links.at[next_edge(h)]);
+                uint g = near ? near_upper[parity * NEAR + (i >> 2)] : prev_edge(link_of(links, next_edge(h)));
                 if (k < 2u) {
                     state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
                 }

@@ -5,7 +5,7 @@
 #include "rounds.glsl"
 
 layout(push_constant, std430) uniform Args {
-    U32 links;
+    Rows links;
     U32 state;
     ReadU32 illegal;
     U32 words;
@@ -25,7 +25,7 @@ void main() {
         uint k = i & 3u;
         if ((h & WON) != 0u) {
             h &= HALF_EDGE;
-            uint g = prev_edge(links.at[next_edge(h)]);
+            uint g = prev_edge(link_of(links, next_edge(h)));
             if (k < 2u) {
                 state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
             }

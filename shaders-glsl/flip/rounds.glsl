@@ -1,4 +1,4 @@
-// What a round is made of. Kernels that see what other invocations of the same dispatch wrote define WORDS as `SharedU32`.
+// What a round is made of. Kernels that see what other invocations of the same dispatch wrote define COHERENT.
 #ifndef ROUNDS_GLSL
 #define ROUNDS_GLSL
 
@@ -8,8 +8,12 @@
 BUFFER(SharedU32, uint, 4, coherent);
 BUFFER(MaybeU32, uint, 4, );
 
-#ifndef WORDS
+#ifdef COHERENT
+#define WORDS SharedU32
+#define MESH SharedRows
+#else
 #define WORDS U32
+#define MESH Rows
 #endif
 #include "tallies.glsl"
 
@@ -54,19 +58,19 @@ void claim(WORDS state, uint stride, uint parity, uint lower, uint upper) {
 
 // Step 3, first half: flips h, whose twin is g, if it has both its triangles; then nobody else touches their links. Outer
 // links keep the names that they had before the round.
-void flip_pair(WORDS triangles, WORDS links, WORDS state, uint stride, uint round, uint h, uint g) {
+void flip_pair(MESH triangles, MESH links, WORDS state, uint stride, uint round, uint h, uint g) {
     uint h1 = next_edge(h);
     uint g1 = next_edge(g);
-    uint t_outer = links.at[h1];
-    uint u_outer = links.at[g1];
-    uint c = triangles.at[h];
-    uint d = triangles.at[g];
-    triangles.at[prev_edge(h)] = d;
-    triangles.at[prev_edge(g)] = c;
-    links.at[h] = u_outer;
-    links.at[g] = t_outer;
-    links.at[h1] = g1;
-    links.at[g1] = h1;
+    uint t_outer = link_of(links, h1);
+    uint u_outer = link_of(links, g1);
+    uint c = apex(triangles, h);
+    uint d = apex(triangles, g);
+    set_apex(triangles, prev_edge(h), d);
+    set_apex(triangles, prev_edge(g), c);
+    set_link(links, h, u_outer);
+    set_link(links, g, t_outer);
+    set_link(links, h1, g1);
+    set_link(links, g1, h1);
     state.at[STAMP(h)] = round << 2 | h % 3u;
     state.at[STAMP(g)] = round << 2 | g % 3u;
 }
@@ -88,20 +92,20 @@ uint side_of(uint h, uint g, uint k) {
 // Step 3, second half, after all flips of the round: renews the link of an outer side. The outer edge behind the flipped one
 // went over to the other triangle, on this side as on the far side. An edge between two flips is renewed and handed on by
 // both sides alike, but only the lower one hands it on.
-Handed renew(WORDS links, WORDS state, uint stride, uint round, uint side) {
+Handed renew(MESH links, WORDS state, uint stride, uint round, uint side) {
     Handed handed;
     handed.side = side;
-    uint outer = links.at[side];
+    uint outer = link_of(links, side);
     handed.mark = outer & CONSTRAINED;
     outer &= HALF_EDGE;
     uint stamp = state.at[STAMP(outer)];
     bool flipped = stamp >> 2 == round;
     if (flipped) {
         uint edge = outer - outer % 3u + (stamp & 3u);
-        outer = outer == next_edge(edge) ? prev_edge(links.at[outer]) : outer;
-        links.at[side] = outer | handed.mark;
+        outer = outer == next_edge(edge) ? prev_edge(link_of(links, outer)) : outer;
+        set_link(links, side, outer | handed.mark);
     } else {
-        links.at[outer] = side | handed.mark;
+        set_link(links, outer, side | handed.mark);
     }
     handed.outer = outer;
     handed.some = !flipped || side < outer;
@@ -110,12 +114,12 @@ Handed renew(WORDS links, WORDS state, uint stride, uint round, uint side) {
 
 // The same for an illegal edge that was not flipped: it stays active, unless a flip beside it hands it on. It gives back what
 // it claimed. A link that another invocation renews meanwhile leads to the same triangles before and after.
-Handed leave(WORDS links, WORDS state, uint stride, uint parity, uint round, uint h) {
+Handed leave(MESH links, WORDS state, uint stride, uint parity, uint round, uint h) {
     uint stamp = state.at[STAMP(h)];
     bool flipped = stamp >> 2 == round;
     uint side = h;
     if (flipped && h == next_edge(h - h % 3u + (stamp & 3u))) {
-        side = prev_edge(links.at[h]);
+        side = prev_edge(link_of(links, h));
     }
     uint g = twin(links, side);
     state.at[CLAIM(h, parity)] = NONE;

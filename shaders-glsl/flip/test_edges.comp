@@ -7,8 +7,8 @@
 #include "verdict.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadPoints positions;
     U32 edges;
     ReadU32 edge_count;
@@ -59,7 +59,7 @@ void main() {
         if (i < count) {
             h = edges.at[i];
             if (!present(listed) || take(i, h)) {
-                g = links.at[h];
+                g = link_of(links, h);
                 if ((g & HALF_EDGE) < h) {
                     // The lower side comes first.
                     uint mark = g & CONSTRAINED;

@@ -7,8 +7,8 @@
 #include "verdict.glsl"
 
 layout(push_constant, std430) uniform Args {
-    ReadU32 triangles;
-    ReadU32 links;
+    ReadRows triangles;
+    ReadRows links;
     ReadPoints positions;
     U32 state;
     WriteU32 illegal;
@@ -35,7 +35,7 @@ void main() {
         uvec3 corner = corners(triangles, t);
         bool wanted = scope == SCOPE_ALL || any(equal(corner, uvec3(GHOST)));
         if (wanted && corner.x != DELETED) {
-            row = uvec3(links.at[3u * t], links.at[3u * t + 1u], links.at[3u * t + 2u]);
+            row = links_of(links, t);
             // What lies on the far sides, where this is the lower side of the edge; read ahead, all at once.
             uvec3 far = uvec3(GHOST);
             bvec3 lower;
@@ -46,7 +46,7 @@ void main() {
                 tests += uint(lower[k]);
                 lower[k] = lower[k] && (row[k] & CONSTRAINED) == 0u;
                 if (lower[k]) {
-                    far[k] = triangles.at[row[k]];
+                    far[k] = apex(triangles, row[k]);
                 }
             }
             if (any(lower)) {

@@ -25,7 +25,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "a85d6109649901f873d4b4d7931b3b671e26f85d3bc3d3bfbd33d5b4d2cf40f0";
+    source "4e441ac0f9d787e0dfb62aaca389ca44c017b748ca896ab62df299c3e335c8e8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -45,7 +45,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "486f077da1c4a3226af41be6d263c5f4b77e56c04611c51bfaf53885849c9aa4";
+    source "d22a67f8d4f44db086bb156e79e53498479944f4b6edad5618b4e5e271408d88";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -69,7 +69,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ead8ed1d5baea2861febb5cc8bb6de3e1de517d4852da39f116e64403c2bca6e";
+    source "62508e5bad2e90a35763f8815ba7f98a633240edd11765cab8ab0593ebb67c7e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -88,7 +88,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "69c3cb8ab69fc50dac94343fa66bd1826ca2feb5963fc292dcf47531edc8b564";
+    source "7aa38d41dfaf8b3babe8cef837839d0373a12d2b253433b6ecf9772269b71907";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -111,7 +111,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "9cc7c69e5e28d02644e8ae2701a51750e381e91d9976df45c8e140fae427ddc5";
+    source "08dc1475ae25068941e9d23c66cbef582cc9af922d9bec3407b6fca457d3cf48";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -129,7 +129,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c04b76ec5c9996e52d8bd2591567e47b3a871a4c5df797143fb31a8407d35b03";
+    source "adc2639abaf56b2bb81d29aa58f023501358ebeb2a5a0142e88eb41329693b89";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -149,7 +149,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "46e220c1c215ce76764612ca312225cfa021fa98436fd9a3f5c95a524124edb2";
+    source "6dfc66751e8b7219011c6132a92bab58d35377759d37cae5f73ac51677aab48f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -171,7 +171,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "988fc729c95463d739fa3435acaa0807a2e465a555cbb31471346e312cdc4a79";
+    source "a0852e5ffcbe463232de45a5488684da4b32f78a7fb6dfc731eeb97211ce7dc3";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -192,7 +192,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "66b9ea05f49cfd7605904eb2847fde1b4d141cd94f4ebc38c82cae0aef469602";
+    source "ae3d11835daf6a70893b727187c319538be3b45598a900af37d0cf6147c00f49";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -212,7 +212,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "9c3ed7e01bf3eed208f3a5177df5d3f9b9e5fd2dd947a868648611533cc0efe7";
+    source "6b03dfce5bd5e67de193d36e727ccebf147c1cdf058cc225bc3d74ee3e157ae8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -235,7 +235,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "2342596f7d77174f8f847a43e82cd147df55ee1519667438724a21d667e89be4";
+    source "c09c01d8af6b8199438eea42636a56e4c97958ef66b6d48a13ed71bfa3bcf07b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -258,7 +258,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "f5eeaf81b85a2e69bfd815d81e64bc7f90d8f5257d9a1bf2ed60b7326aff2fa6";
+    source "a5b92f52e02f24fd9c9b955450dc2b8e75573b81101670e37220b1a4b3b69dc0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -279,7 +279,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "2d584e97cd7c563490f63288e818766723b3ca878d630de4dd2076dd47117d8b";
+    source "ab0da1ea52995e1ea5fc204f86463e25b734664ff1544ea54d13ce53a6d6a530";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -305,7 +305,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "9fa176bfdb20cab099d74567f6f0739bf6f00eedd94d3a3a36734d9aec4f5113";
+    source "9384dbeb30a885f9cbd78786fac85fd0e8e1f325d71196261114ce9e23345d69";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -353,7 +353,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "5aef042b01f7858068a65c1897cefbf8a4735a28d80f1b6845877d7bb97dc0f2";
+    source "e81d96314bd0e8ab9dd642119b116e4f32cd24bc8670fe32d3820a5a41834593";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -372,7 +372,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "4e9225960f91392c8563deae42d267e25f95caecea32171cccc73ade0e1ad2b7";
+    source "de2f4b89aaf2d431104166b436bb0a16d844bb3bca6f51ac64a8721688366767";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -401,6 +401,6 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "b183a95ae984d0ae0956a545a88bedd239a41a6c33868ca6f117011702979d57";
+    source "c4456477b163871f4aeca42b19eeb723e4a856ea7876ac5e3bda52d797d030d4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

@@ -22,7 +22,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "1e841cafa22b566b18d4be9ca26fa1ef150c8c82a4aa20de6debafa3753f5f7d";
+    source "62ae4c88270b4e11fa7d5f17fb9d3106c5438a069c3ecbea89abe275e4c37b41";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -52,7 +52,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "751332ac8a70fc37e0f6001d93cce1765835afb072797be22af2425003f20516";
+    source "321c44503642b8a431e01485797f516a7761bcd128ca6a90a687bfc5829ce31d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -82,7 +82,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "815f2b54c6e8af549cbdf142a4261d20841de9143a78122a52c47c0e679abfeb";
+    source "c5b2ec33002feee5a4081dcfbb1d236fa7d66bf4537ded71ec56ce73adcbe1ba";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -117,7 +117,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "89a256ad2e11ac13b33f313ed2985314c4254a94786bb47bb01b2faa19836f24";
+    source "34b165469237a39b3e44fc7181cd6957fa7b1f9bc343cbe1cba1cdfcdfb34251";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -143,7 +143,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4b50c174c3a987a8c46130a4da9295de3eb5268acef5ff64812ffcedafee8ef6";
+    source "c1ef70e7348867b36c2d66b2307405e5e503376e4b2b14cc60d7bd5c0db9987e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -167,7 +167,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "8b72c6d0c8e77e33d572b21275826e8c7cc785bfd344db95540fad145762ad3c";
+    source "ce084f94151930484e396529f65b21b263b54abab5b8f5af618d588049ce1097";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -192,7 +192,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "1366aa44ea1dd9ce12d32362115f628b5026f1ed748029deb1d086d8767d201e";
+    source "d690951647845762da168339ef66ab4c6c41a2a91457dce3e994e7c51165df4e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -217,7 +217,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "4cabf7df5911530293000ba3fde805c29bdda779c800e7820912bb7fbfdea62d";
+    source "00d619fc286e0e65237ddc9da0db82637867075087ded433939aa97191c76753";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -249,7 +249,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "f06de22ecd0b7625352df29b0ab6decccb6bdad8ffc71d5fa1f071ec24de6606";
+    source "54d51cfe9c2668cad8fc65d31f8e8ac0faca16fea832f6d8d456f12421cf45d6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -323,7 +323,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c5c5048ff1459f2a5c0b19d26a6e1b012c56c38e9df58ab846c7902bbdd64e52";
+    source "fe1ebcb480586763cf35272f4215bcfc4b406f6dcef64bd3197d4670e6f92746";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -349,7 +349,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "33d7ccbc606d0a84fb7e6b772481a93a961ec557ac89052679b4f4f687b5d3dc";
+    source "8b963ba1bbd8ba0f13e5717fafbb2a58d63171598b2f220b7ce1e59035c08ada";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -377,7 +377,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "09e48f709d4424040f6535ef1b5e66b43db509c4a2332b681a30593525192e18";
+    source "a1c21641cb3bac59dd8d3b5ca95d2ba1ef4aaee30d49c911e3fd1b8ad0f90d52";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -402,7 +402,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "872ea61b9ebc4e6e0fc8a51a826d08969af30b8dab8f6cc5c08d57d1757daee3";
+    source "c5ee5b2a1b21e2783da3d3ba5cc04b331cdd16654a47c2d93b02719e75c9a7e1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -422,7 +422,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "69bcb53b454e4372df390a1149123d94505a78fc75648a7b86c458972d4c6f05";
+    source "fb7a99bcd06d998131c43d165a846596706312154a2a63c75c138c3887da8290";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -455,7 +455,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "48f92a21c581f9138e8727d24512a1c13289edfd8992ebf020c3706c5d8ca69e";
+    source "abb5bf4f07c5c8b1f88cc708a505e0a824f276e045c537931e06355cf88d0a80";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -474,6 +474,6 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "96cb58fd22f5e5dc82244679180f765f90f5ee460a871c74debef2a485037c0a";
+    source "bf45cba64d1ea8402d6e6e45ddad764aa4fa1f2b861d8ac40565cec4c2c07ba0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

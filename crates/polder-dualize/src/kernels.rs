@@ -47,7 +47,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot",
         "GroupNonUniformShuffleRelative", "PhysicalStorageBufferAddresses", "Shader"];
-    source "06818d3db4b309c7a7c69ab31de0e600cfb31fbbfc9266b5a2a92833b996e057";
+    source "c7ca29b87b567bd22babc0fce6fefb20dce7f1b55b7be530d57bc6c409e7af21";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -77,7 +77,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "PhysicalStorageBufferAddresses", "Shader"];
-    source "5690c1fbfde59451d104022b5efac082b76443bd2d40bc44b1d02fdc534ebd2f";
+    source "e32694a9501dc9beb45354db64bef70996b6941e04bbe3162d02e94260abacdd";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -96,7 +96,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "9d7419d225980b76a85632f4d978c4cb5fa56011ced49e0e7ebe39d9844985bd";
+    source "cb96ab903cc466d710385b4f16a1b1a620ed8b21a6f3fb4a6428015d669b1e78";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -120,7 +120,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "896d6fbdd472cd65a321f754560d2ed91c1e053ff0f9fa8a3d473d25f5bc71e8";
+    source "0a56c227ec428a47b849a83493818fa4ae9c492ab2d3d15a60a6b73c7450709c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -143,7 +143,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "6a0dfe15a0239ed5da00c566bd226dbeea7e578414be9b420a5690c06066c02b";
+    source "1d4c9ddfe3bd4289c7145cc069e812e6f2b294cbc3c186e00307076a9ac32cba";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -168,7 +168,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "211dc9ed5a702dadaf85c0983e98a59a19312a8c49ef12ca67ebbfa119985952";
+    source "ee50425d2c910777d36524bc68b6d487cfdf8b4cd5da1813bc342972567cfb4a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -195,7 +195,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "b982ff743a1ec8e10a11901e51dddf0522e13d53e6ceada147ee31ecbedfef30";
+    source "09d2330cf1f0222a81d59461479205b8ae098722fa2f2bbe68856e86bb9ada84";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -217,7 +217,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "25dfb4836178a5f35b2b208d3ab765d779ea2a43a8dbdf25acbac8e8150c337a";
+    source "aaf06e8dd66c7d9d25c7c9abc78d87358ebbad096c5b091c3b4e0037edfe1925";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -253,7 +253,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "dd36fd73123123d257c83d4af529f6fec76b035409530cced2eef6082bb6c3dc";
+    source "14129c4d3f98ba144b338aebd0408d87348f44c3f941002852b8fca6bb62cb4f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -285,7 +285,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "2a9f663fff7ad118a0278f832d02f3a2e7a29ab034ebc52734d1d426c8458b42";
+    source "b5acdeb17ffd151df209d97c3711c2b5206d8b6fa70960857d96eebd2dad5c91";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -301,7 +301,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "ed750f9e7e76ce3e8b3801be1ded16936764d88302de20f99d7e7a9ee7d0edff";
+    source "b6bb47260fcd343c3ca0804b5236153f7bbc6f0192a2820ce731df124830be7a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -326,7 +326,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "19f823289cc4967dda24724a3172ab8c482f4a074f3f08098c1b670669b7a976";
+    source "e98e9de0556ceb7c2a447633ac9103fb9bcb6506a0b32732ed97814a26ac8f8a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -358,7 +358,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "4956585afdc0a8a198ea672f5178409782faaa4b50bfc0cd57cca2de6abbfbf4";
+    source "7d44aae9b3c68b4ade4c244f2ec8fe0fc95f233620cdfa745266afdc047c0d4d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -385,7 +385,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "f5f7ecc0e233a8340ca8a4c2bcbdbb47c72b4cc12ba5d23f7bd93500cce75b28";
+    source "e54cb186bdf0517b14d2e6148d468435eb471aea33e90d0dbf845ae5d8da9bac";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -431,7 +431,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "cf1cbf41ee4882f4e7dbdda4e600e4f1cf2a61c665904f136b80526740b29675";
+    source "7a6af660247acba69c267264a1150929c9ed1564cb36d4f3fedb45ace84b4347";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -453,7 +453,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "67279391da74a8e163b9f977ffe6f94086de6a9152dd0af4405041d46f0a39df";
+    source "9d2efddd1ac87c0945e6c32f59a259fc66531a857c0e07738d115f935eb089a1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -487,7 +487,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1, "FEW"(2) = 1024];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "876d8c8e52e4971f9cbe5c5c48bada3d11845adfb8b0cb035bd097b5b554f710";
+    source "98b0fd0e7a7182c3a81c0babd45761e04682db26120ef314404e1c1af4001bb5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -514,7 +514,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "35a8235620d719b6c562d2363c476a2c820ab00d36b7da7f550fd556d5a72143";
+    source "776eca3661fc35015187f1e60fd4e8c22de0dd031ef97c5a48e0cb5f7c3b3437";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -540,7 +540,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ac06f2a07b44a7c8ade8185fe1cff98a4348d51c3c8c5e3086bbe5980c48764d";
+    source "8c3a450132b0a13b0b5e224c01230e0eff605322df7ffd4b2026851bfff72f7e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -563,7 +563,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "15f2b86b7314220cff2c30d52c2aed4b62e21fafbd1106f33c82078517a5d23c";
+    source "67e43ba73f1debeaa8666cb6412a881bfcae9581c87745d62d18033f0c8c641f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -584,7 +584,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "949669e14f7abcec82ad9d511503486319423963499fe21ebc285cbfa3b91e00";
+    source "b2392646a55fbb8034d04f3032980fe5684c0996a081726c8b011f4c351586de";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -614,6 +614,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "1ab46b13db2d17e6f6a7d01ae1780d260a32a0bc7703c4969e7ec8e07d1d22f3";
+    source "e44037bf1d29604d79a20392195aadee78b3894bb7b8347257ea592b59119ac7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

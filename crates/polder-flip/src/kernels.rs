@@ -27,7 +27,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "a3d67026a7adf5194919180ac33b7edacf162a0ef7cf693a156c9f6f67152017";
+    source "61c5a223008739c08ffad9b42d3ff80138e6d999e1cdd936e7a2574d736b2590";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -56,7 +56,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "2587b1b271096b343e2b491365ec5a2348258a5507a899da317a19e70dd87219";
+    source "907144866755e3bdbab5748ae7ee15db33d7d204c99352eb47261accc5907bc7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -86,7 +86,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "cafeb3279d28ed16d6fe25d2fce9a80a5c655f214c597134fa420f1b610acb83";
+    source "cf79612c73009ee5c0574245f04b3563c10f94528f6d6fd8f3aaf2eeb2b0a6a6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -147,7 +147,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "ddc86b5d8eb1ee6f2b6398d1015d4b61bcc4688b661fb51fcce2ee50d408cff1";
+    source "36e503ebb751fcc96014104326291cae38dbacf32e598358edb2c07a684df0b4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -178,7 +178,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "312f16dc10185969fa396a65f92c486e03ac6aa30f940cd7a4b3a50b9d3fa23c";
+    source "c470ff884ff0dc5361d77a8446dcd3eba0bf14ec751f7730c9197886ae6c16b2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -206,6 +206,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "58ae89f6213cf89d8c9cc74e663f735ade573f9610337318cb855e0b303b2415";
+    source "10e313f48c4d289992ab481fd3b4ae2b6b65469b5c32218ac0858bfdb4e28c8c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
