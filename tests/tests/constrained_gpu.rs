@@ -3,79 +3,18 @@
 #![cfg(feature = "gpu-tests")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod facade_gpu_support;
 mod vulkan_support;
 
-use polder::{
-    Backend, CrossingPolicy, DVec2, Error, Gpu, MeshError, Options, Place, Pslg, Report, triangulate, verify,
-};
+use facade_gpu_support::{assert_on_device, assert_same, close, on_cpu, on_device, open, sets, stage};
+use polder::{Backend, CrossingPolicy, DVec2, Error, Gpu, MeshError, Options, Place, Pslg, triangulate, verify};
 use polder_flip::gpu::Arithmetic;
 use polder_io::generate;
 use polder_tests::constrained_families;
-use polder_vulkan::{Buffer, Device, Engine};
-use std::path::Path;
-
-const STAGES: [&str; 11] = [
-    "upload",
-    "bounds",
-    "voronoi",
-    "dualize",
-    "shift",
-    "insert",
-    "walk",
-    "constrain",
-    "flip",
-    "canonical_order",
-    "download",
-];
-
-fn open(arithmetic: Arithmetic) -> Gpu {
-    let device = Device::open(&vulkan_support::options()).unwrap();
-    Gpu::with_arithmetic(&device, arithmetic).unwrap()
-}
-
-/// The validation layer must have had nothing to say, and no kernel have written past an end.
-fn close(gpu: Gpu) {
-    assert_eq!(gpu.device().validation_messages(), Vec::<String>::new());
-    assert_eq!(gpu.device().overruns(), Vec::<String>::new());
-}
-
-fn on_cpu() -> Options {
-    Options::with_backend(Backend::Cpu)
-}
+use polder_vulkan::{Device, Engine};
 
 fn pslg(points: &[(f64, f64)], constraints: &[[u32; 2]]) -> Pslg {
     Pslg::new(points.iter().copied().map(DVec2::from).collect(), constraints.to_vec()).unwrap()
-}
-
-fn assert_on_device(report: &Report, name: &str) {
-    assert_eq!(report.backend, "vulkan", "{name}");
-    assert_eq!(report.stages_on_cpu().count(), 0, "{name}");
-    let stages: Vec<&str> = report.stages.iter().map(|stage| stage.name).collect();
-    let mut expected = STAGES.to_vec();
-    if 4 * report.constraints.total >= 3 * report.points.total {
-        let walk = STAGES.iter().position(|&stage| stage == "walk").unwrap();
-        expected.insert(walk, "flip_points");
-    }
-    assert_eq!(stages, expected, "{name}");
-    for stage in &report.stages {
-        let moved = matches!(stage.name, "upload" | "download");
-        assert_eq!(stage.on, if moved { Place::Transfer } else { Place::Device }, "{name}, {}", stage.name);
-    }
-}
-
-fn assert_same(gpu: &mut Gpu, name: &str, pslg: &Pslg, options: &Options) -> Report {
-    let output = gpu.triangulate(pslg, options).unwrap_or_else(|error| panic!("{name}: {error}"));
-    let expected = triangulate(pslg, &on_cpu()).unwrap();
-    assert_eq!(output.triangulation.digest(), expected.triangulation.digest(), "{name}");
-    assert_eq!(output.triangulation.constrained_bits(), expected.triangulation.constrained_bits(), "{name}");
-    assert_eq!(output.triangulation.chains(), expected.triangulation.chains(), "{name}");
-    assert!(output.triangulation == expected.triangulation, "{name}");
-    assert_eq!(output.triangulation.neighbors(), expected.triangulation.neighbors(), "{name}");
-    let Report { points, constraints, triangles, .. } = expected.report;
-    let found = (&output.report.points, &output.report.constraints, output.report.triangles);
-    assert_eq!(found, (&points, &constraints, triangles), "{name}");
-    assert_on_device(&output.report, name);
-    output.report
 }
 
 #[test]
@@ -83,7 +22,7 @@ fn every_family_has_the_digest_of_the_cpu() {
     let mut gpu = open(Arithmetic::Filtered);
     for (name, pslg) in constrained_families(1000, 71) {
         let report = assert_same(&mut gpu, name, &pslg, &Options::default());
-        let counts = |stage: &str| report.stages.iter().find(|found| found.name == stage).unwrap().counts.clone();
+        let counts = |name: &str| &stage(&report, name).counts;
         assert!(counts("walk")["pieces"] > 0, "{name}");
         assert!(name != "segments" || counts("constrain")["flips"] > 0, "{name}");
     }
@@ -203,72 +142,15 @@ fn constraints_through_very_many_vertices() {
     close(gpu);
 }
 
-fn data(name: &str) -> Pslg {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../examples/data").join(name);
-    polder_io::Input::read(&path).unwrap().pslg
-}
-
 #[test]
 fn real_sets() {
     let mut gpu = open(Arithmetic::Filtered);
-    for name in ["a_letter.poly", "box.poly", "coast.poly", "contours.poly", "face.poly", "spiral.poly"] {
-        let pslg = data(name);
-        let report = assert_same(&mut gpu, name, &pslg, &Options::default());
+    for (name, pslg) in &sets() {
+        let report = assert_same(&mut gpu, name, pslg, &Options::default());
         assert!(report.constraints.constrained_edges > 0, "{name}");
-        let output = gpu.triangulate(&pslg, &Options::default()).unwrap();
-        assert!(verify::check_triangulation(&pslg, &output.triangulation).is_canonical(), "{name}");
+        let output = gpu.triangulate(pslg, &Options::default()).unwrap();
+        assert!(verify::check_triangulation(pslg, &output.triangulation).is_canonical(), "{name}");
     }
-    close(gpu);
-}
-
-#[test]
-fn crossings_are_named_as_on_the_cpu() {
-    let mut gpu = open(Arithmetic::Filtered);
-    let square = pslg(&[(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)], &[[0, 2], [0, 1], [3, 1], [2, 0]]);
-    let cases = [
-        square,
-        generate::crossing_segments(300, 100, 1.0, 1),
-        generate::crossing_segments(900, 300, 0.1, 2),
-        generate::crossing_segments(60, 20, 0.5, 3),
-    ];
-    for pslg in &cases {
-        for max_crossings in [1_000_000, 7, 1, 0] {
-            let options = Options { max_crossings, ..on_cpu() };
-            let expected = triangulate(pslg, &options).unwrap_err();
-            assert!(matches!(expected, Error::CrossingConstraints { .. }));
-            assert_eq!(gpu.triangulate(pslg, &options).unwrap_err(), expected);
-        }
-        // What crosses leaves nothing behind.
-        assert_same(&mut gpu, "after crossings", &generate::segments(300, 100, 1), &Options::default());
-    }
-    close(gpu);
-}
-
-#[test]
-fn crossings_are_split_as_on_the_cpu() {
-    let mut gpu = open(Arithmetic::Filtered);
-    let splitting = Options { crossings: CrossingPolicy::Split, ..on_cpu() };
-    for (points, constraints, length, seed) in [(4, 2, 2.0, 4), (300, 100, 0.3, 1), (500, 150, 0.1, 2)] {
-        let pslg = generate::crossing_segments(points, constraints, length, seed);
-        let expected = triangulate(&pslg, &splitting).unwrap();
-        let output = gpu.triangulate(&pslg, &splitting).unwrap();
-        assert_eq!(output.triangulation.digest(), expected.triangulation.digest());
-        assert!(output.triangulation == expected.triangulation);
-        let (found, wanted) = (&output.report, &expected.report);
-        assert_eq!((&found.points, &found.constraints), (&wanted.points, &wanted.constraints));
-        // Cutting is the host's work, and said so; all else is the device's.
-        let places: Vec<(&str, Place)> = found.stages.iter().map(|stage| (stage.name, stage.on)).collect();
-        let cut = !output.triangulation.added().is_empty();
-        let on_host: Vec<&str> = found.stages_on_cpu().map(|stage| stage.name).collect();
-        assert_eq!(on_host, if cut { vec!["split"] } else { vec![] });
-        assert_eq!(places.contains(&("crossings_met", Place::Device)), cut);
-        assert!(places.ends_with(&[("canonical_order", Place::Device), ("download", Place::Transfer)]));
-    }
-    // What does not cross is not cut.
-    assert_same(&mut gpu, "segments", &generate::segments(300, 100, 1), &splitting);
-    let limited = Options { max_added_vertices: 3, ..splitting.clone() };
-    let pslg = generate::crossing_segments(300, 100, 0.3, 1);
-    assert_eq!(gpu.triangulate(&pslg, &limited).unwrap_err(), triangulate(&pslg, &limited).unwrap_err());
     close(gpu);
 }
 
@@ -279,10 +161,7 @@ fn constraints_and_result_may_stay_on_the_device() {
     let mut gpu = Gpu::on(&device).unwrap();
     for (name, pslg) in constrained_families(400, 9) {
         let expected = triangulate(&pslg, &on_cpu()).unwrap();
-        let points = Buffer::new(&device, "points", pslg.points().len()).unwrap();
-        let constraints = Buffer::new(&device, "constraints", pslg.constraints().len()).unwrap();
-        own.upload(points.view(), pslg.points()).unwrap();
-        own.upload(constraints.view(), pslg.constraints()).unwrap();
+        let (points, constraints) = on_device(&device, &mut own, &pslg);
         let made = gpu.triangulate_constrained_on_device(points.view(), constraints.view(), &Options::default());
         let mut result = made.unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(result.report().stages_on_cpu().count(), 0);
@@ -301,16 +180,8 @@ fn constraints_and_result_may_stay_on_the_device() {
         assert_eq!(result.report().constraints, report.constraints, "{name}");
     }
     let pslg = generate::crossing_segments(90, 30, 1.0, 2);
-    let points = Buffer::new(&device, "points", pslg.points().len()).unwrap();
-    let constraints = Buffer::new(&device, "constraints", pslg.constraints().len()).unwrap();
-    own.upload(points.view(), pslg.points()).unwrap();
-    own.upload(constraints.view(), pslg.constraints()).unwrap();
+    let (points, constraints) = on_device(&device, &mut own, &pslg);
     let all = (points.view(), constraints.view());
-    let error = gpu.triangulate_constrained_on_device(all.0, all.1, &Options::default()).unwrap_err();
-    assert_eq!(error, triangulate(&pslg, &on_cpu()).unwrap_err());
-    let splitting = Options { crossings: CrossingPolicy::Split, ..Options::default() };
-    let error = gpu.triangulate_constrained_on_device(all.0, all.1, &splitting).unwrap_err();
-    assert_eq!(error.kind(), "unsupported");
 
     // No constraints are as if none were given; indices are looked at before any work.
     let (none, few) = (constraints.slice(0..0).unwrap(), points.slice(0..0).unwrap());
@@ -363,16 +234,15 @@ fn is_same(gpu: &mut Gpu, name: &str, pslg: &Pslg) -> bool {
         }
     };
     assert_on_device(&output.report, name);
-    let of = |name: &str| 1e3 * output.report.stages.iter().find(|stage| stage.name == name).unwrap().seconds;
+    let of = |name: &str| 1e3 * stage(&output.report, name).seconds;
     let on_device = output.report.stages.iter().filter(|stage| stage.on == Place::Device);
     let all: f64 = on_device.map(|stage| 1e3 * stage.seconds).sum();
     let (digest, waits) = (output.triangulation.digest(), output.report.device.as_ref().unwrap().host_waits);
     let [walk, constrain, flip] = ["walk", "constrain", "flip"].map(of);
     let bytes = output.report.device.as_ref().unwrap().peak_bytes / pslg.points().len() as u64;
-    let insertion = output.report.stages.iter().find(|stage| stage.name == "constrain").unwrap();
     println!(
         "{name}: {digest}, {waits} waits, {bytes} bytes a point at the highest peak so far, {all:.2} ms on the device: walk {walk:.2}, constrain {constrain:.2}, flip {flip:.2}; {:?}",
-        insertion.counts
+        stage(&output.report, "constrain").counts
     );
     digest == expected.triangulation.digest()
         && output.triangulation == expected.triangulation
@@ -403,14 +273,7 @@ fn every_large_family_has_the_digest_of_the_cpu() {
 fn large_recipes_and_all_real_sets_have_the_digest_of_the_cpu() {
     let mut gpu = open(Arithmetic::Filtered);
     let mut failed = Vec::new();
-    let folder =
-        std::env::var("POLDER_DATA").unwrap_or(concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/data").into());
-    let mut inputs: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
-    inputs.retain(|path| path.extension().is_some_and(|extension| extension == "poly" || extension == "pslg"));
-    inputs.sort();
-    for path in inputs {
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        let pslg = polder_io::Input::read(&path).unwrap().pslg;
+    for (name, pslg) in sets() {
         failed.extend((!is_same(&mut gpu, &name, &pslg)).then_some(name));
     }
     let most = std::env::var("POLDER_POINTS").map_or(10_000_000, |text| text.parse().unwrap());

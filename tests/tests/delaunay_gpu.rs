@@ -2,9 +2,11 @@
 #![cfg(feature = "gpu-tests")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod facade_gpu_support;
 mod vulkan_support;
 
-use polder::{AUTO_FROM, Backend, DVec2, Error, Gpu, MeshError, Options, Place, Pslg, Report, triangulate, verify};
+use facade_gpu_support::{assert_on_device, assert_same, close, on_cpu, open};
+use polder::{AUTO_FROM, Backend, DVec2, Error, Gpu, MeshError, Options, Pslg, Report, triangulate, verify};
 use polder_flip::gpu::Arithmetic;
 use polder_io::generate;
 use polder_tests::{families, point_families};
@@ -12,46 +14,8 @@ use polder_vulkan::{Buffer, Device, DeviceKind, Engine, Selection};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
-const STAGES: [&str; 9] =
-    ["upload", "bounds", "voronoi", "dualize", "shift", "insert", "flip", "canonical_order", "download"];
-
-fn open(arithmetic: Arithmetic) -> Gpu {
-    let device = Device::open(&vulkan_support::options()).unwrap();
-    Gpu::with_arithmetic(&device, arithmetic).unwrap()
-}
-
-/// The validation layer must have had nothing to say.
-fn close(gpu: Gpu) {
-    assert_eq!(gpu.device().validation_messages(), Vec::<String>::new());
-}
-
 fn without_constraints(pslg: &Pslg) -> Pslg {
     Pslg::new(pslg.points().to_vec(), Vec::new()).unwrap()
-}
-
-fn assert_on_device(report: &Report, name: &str) {
-    assert_eq!(report.backend, "vulkan", "{name}");
-    assert_eq!(report.stages_on_cpu().count(), 0, "{name}");
-    let device = report.device.as_ref().unwrap();
-    assert!(!device.name.is_empty() && device.dispatches > 0 && device.peak_bytes > 0, "{name}");
-    let stages: Vec<&str> = report.stages.iter().map(|stage| stage.name).collect();
-    assert_eq!(stages, STAGES, "{name}");
-    for stage in &report.stages {
-        let moved = matches!(stage.name, "upload" | "download");
-        assert_eq!(stage.on, if moved { Place::Transfer } else { Place::Device }, "{name}, {}", stage.name);
-    }
-}
-
-fn assert_same(gpu: &mut Gpu, name: &str, pslg: &Pslg, options: &Options) -> Report {
-    let output = gpu.triangulate(pslg, options).unwrap_or_else(|error| panic!("{name}: {error}"));
-    let expected = triangulate(pslg, &Options::with_backend(Backend::Cpu)).unwrap();
-    assert_eq!(output.triangulation.digest(), expected.triangulation.digest(), "{name}");
-    assert!(output.triangulation == expected.triangulation, "{name}");
-    assert_eq!(output.triangulation.neighbors(), expected.triangulation.neighbors(), "{name}");
-    assert_eq!(output.report.points, expected.report.points, "{name}");
-    assert_eq!(output.report.triangles, expected.report.triangles, "{name}");
-    assert_on_device(&output.report, name);
-    output.report
 }
 
 #[test]
@@ -92,7 +56,7 @@ fn few_points_and_numbers_around_a_workgroup() {
     ] {
         let pslg = Pslg::new(points.into_iter().map(DVec2::from).collect(), Vec::new()).unwrap();
         let output = gpu.triangulate(&pslg, &Options::default()).unwrap_or_else(|error| panic!("{name}: {error}"));
-        let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap();
+        let expected = triangulate(&pslg, &on_cpu()).unwrap();
         assert!(output.triangulation == expected.triangulation, "{name}");
         assert_eq!(output.report.stages_on_cpu().count(), 0, "{name}");
         assert!(verify::check_triangulation(&pslg, &output.triangulation).is_canonical());
@@ -110,7 +74,7 @@ fn neither_grid_nor_order_nor_what_was_there_before_change_the_result() {
     }
     let shuffled = polder_tests::shuffled(&pslg, 4);
     let output = gpu.triangulate(&shuffled.pslg, &Options::default()).unwrap();
-    let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
+    let expected = triangulate(&pslg, &on_cpu()).unwrap().triangulation;
     assert_eq!(shuffled.digest_back(&output.triangulation), expected.digest());
     close(gpu);
 }
@@ -148,7 +112,7 @@ fn memory_that_is_made_while_the_device_works_holds_the_result() {
 fn points_and_result_may_stay_on_the_device() {
     let device = Device::open(&vulkan_support::options()).unwrap();
     let pslg = generate::gaussian(3000, 2);
-    let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
+    let expected = triangulate(&pslg, &on_cpu()).unwrap().triangulation;
     let mut own = Engine::new(&device).unwrap();
     let points = Buffer::new(&device, "points", 3000).unwrap();
     own.upload(points.view(), pslg.points()).unwrap();
@@ -217,7 +181,7 @@ fn what_cannot_be_done_is_a_typed_error_and_auto_goes_to_the_cpu() {
 #[test]
 fn loss_and_lack_of_memory_are_errors_and_the_next_call_works() {
     let pslg = generate::uniform(500, 5);
-    let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
+    let expected = triangulate(&pslg, &on_cpu()).unwrap().triangulation;
     let mut gpu = open(Arithmetic::Filtered);
     for allocation in 0..200 {
         gpu.release();
@@ -247,7 +211,7 @@ fn every_large_family_has_the_digest_of_the_cpu() {
         if wanted.as_ref().is_some_and(|wanted| wanted != name) {
             continue;
         }
-        let expected = triangulate(&pslg, &Options::with_backend(Backend::Cpu)).unwrap().triangulation;
+        let expected = triangulate(&pslg, &on_cpu()).unwrap().triangulation;
         gpu.release();
         let same = match gpu.triangulate(&pslg, &Options::default()) {
             Ok(output) => {

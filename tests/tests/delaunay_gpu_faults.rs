@@ -4,9 +4,9 @@
 
 mod vulkan_support;
 
-use polder::{Backend, Error, Gpu, Options, Pslg, Triangulation, triangulate};
+use polder::{Backend, CrossingPolicy, Error, Gpu, Options, Pslg, Triangulation, triangulate};
 use polder_io::generate;
-use polder_vulkan::{Device, Error as EngineError};
+use polder_vulkan::{Buffer, CacheFolder, Device, DeviceOptions, Error as EngineError, Faults};
 use vulkan_support::faults::fail_everywhere;
 
 /// An error of the facade, and the one of the engine that it stands for.
@@ -58,6 +58,58 @@ fn every_failure_is_an_error_and_the_next_call_works() {
 fn every_failure_on_a_line() {
     let points = generate::collinear(100, 5).points().to_vec();
     fails_well(&Pslg::new(points, (0..30).map(|i| [3 * i, i]).collect()).unwrap());
+}
+
+/// Points and constraints are fetched, cut, brought back and triangulated again.
+#[test]
+fn failures_where_constraints_on_the_device_are_cut() {
+    let pslg = generate::crossing_segments(24, 8, 1.0, 5);
+    let options = Options { crossings: CrossingPolicy::Split, ..Options::with_backend(Backend::Cpu) };
+    let expected = triangulate(&pslg, &options).unwrap().triangulation;
+    assert!(!expected.added().is_empty());
+    let folder = tempfile::tempdir().unwrap();
+    let cache = CacheFolder::At(folder.path().to_owned());
+    let open = || Gpu::on(&Device::open(&DeviceOptions { cache: cache.clone(), ..vulkan_support::options() }).unwrap());
+    let work = |gpu: &mut Gpu| {
+        let points = Buffer::new(gpu.device(), "points", pslg.points().len())?;
+        let constraints = Buffer::new(gpu.device(), "constraints", pslg.constraints().len())?;
+        gpu.engine().upload(points.view(), pslg.points())?;
+        gpu.engine().upload(constraints.view(), pslg.constraints())?;
+        gpu.triangulate_constrained_on_device(points.view(), constraints.view(), &options)?.fetch()
+    };
+    let mut gpu = open().unwrap();
+    assert!(work(&mut gpu).unwrap() == expected);
+    gpu.device().save_pipelines();
+    // The first index at which nothing strikes any more.
+    let in_turn = |gpu: &mut Gpu, set: &dyn Fn(&Faults, u64), step: usize, kind: &str| {
+        for index in (0..).step_by(step) {
+            gpu.release();
+            set(gpu.device().faults(), index);
+            let done = work(gpu);
+            gpu.device().faults().clear();
+            match done {
+                Ok(found) => {
+                    assert!(found == expected);
+                    return index;
+                }
+                Err(error) => assert_eq!(error.kind(), kind, "{index}: {error}"),
+            }
+        }
+        0
+    };
+    let refusals = in_turn(&mut gpu, &Faults::refuse_allocation, 3, "out_of_memory");
+    let timeouts = in_turn(&mut gpu, &Faults::time_out_at_submission, 1, "device_lost");
+    // Each loss takes a new device: before, while and after constraints are cut.
+    for index in (0..timeouts).step_by(5) {
+        let mut gpu = open().unwrap();
+        gpu.device().faults().lose_at_submission(index);
+        assert_eq!(work(&mut gpu).unwrap_err().kind(), "device_lost");
+        assert_eq!(work(&mut gpu).unwrap_err().kind(), "device_lost");
+    }
+    println!("{refusals} refusals, {timeouts} submissions");
+    assert!(refusals > 50 && timeouts > 12, "{refusals}, {timeouts}");
+    assert_eq!(gpu.device().validation_messages(), Vec::<String>::new());
+    assert_eq!(gpu.device().overruns(), Vec::<String>::new());
 }
 
 /// What a wait has given up on may still be at work on the memory that the next call uses.

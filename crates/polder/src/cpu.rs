@@ -28,7 +28,8 @@ pub(crate) fn crossings(pslg: &Pslg, options: &Options) -> Result<Error, Error> 
     }
 }
 
-fn in_pool<T: Send>(options: &Options, work: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
+/// Runs some work on as many threads as the caller asks for.
+pub(crate) fn in_pool<T: Send>(options: &Options, work: impl FnOnce() -> Result<T, Error> + Send) -> Result<T, Error> {
     if options.threads == 0 {
         return work();
     }

@@ -26,8 +26,9 @@ pub enum CrossingPolicy {
     #[default]
     Error,
     /// They are cut there: a vertex is added at each crossing, at its position correctly rounded. Pieces may lie a little
-    /// beside the constraints that they are of, by at most half a last place of each coordinate in every round. The CPU does
-    /// that for every backend, as a stage of its own in the report, and only if constraints cross.
+    /// beside the constraints that they are of, by at most half a last place of each coordinate in every round, of which one
+    /// is the rule; more are needed by lines that cannot be told apart where they cross, and these are brought together. The
+    /// CPU does that for every backend, as a stage of its own in the report, and only if constraints cross.
     Split,
 }
 

@@ -26,6 +26,7 @@ mod insert;
 mod intersection;
 pub mod kernels;
 mod keys;
+mod near;
 mod pairs;
 mod place;
 mod walk;
@@ -37,6 +38,7 @@ pub use inner::Trial;
 pub use insert::{INNER_ROUNDS, Insertion, LONG_CHAIN, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS, insert};
 pub use intersection::intersection;
 pub use keys::{claim_key, owner_of, owner_priority};
+pub use near::near;
 pub use walk::walk;
 
 use crate::{ConstrainError, InsertReport, Walk};

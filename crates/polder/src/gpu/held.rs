@@ -1,5 +1,6 @@
 //! What a triangulation holds on the device, and what its stages counted.
 
+use super::cut::Cut;
 use super::line::OnLine;
 use super::pipeline::Pipeline;
 use super::{ChainsOnDevice, constraints, internal};
@@ -40,6 +41,8 @@ pub(super) struct Held {
     pub(super) canonical: canonical::Buffers,
     /// What the last call left, if its points were on a line and had constraints.
     pub(super) on_line: Option<OnLine>,
+    /// What the last call left, if its constraints were cut.
+    pub(super) cut: Option<Cut>,
 }
 
 impl Held {
@@ -103,11 +106,15 @@ impl Held {
             mesh,
             canonical,
             on_line: None,
+            cut: None,
         })
     }
 
     /// The vertices along constraints, if there are any.
     pub(super) fn chains(&self, found: &Found) -> Result<Option<ChainsOnDevice<'_>>, Error> {
+        if let Some(cut) = &self.cut {
+            return Ok(Some(cut.chains()));
+        }
         match (&found.chains, &self.on_line, &self.constraints) {
             (None, ..) => Ok(None),
             (_, Some(on_line), _) => Ok(Some(on_line.chains())),

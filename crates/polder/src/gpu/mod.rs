@@ -13,6 +13,7 @@
 
 mod auto;
 mod constraints;
+mod cut;
 mod held;
 mod line;
 mod pipeline;
@@ -38,6 +39,17 @@ use work::Input;
 struct Uploaded {
     points: Buffer<DVec2>,
     constraints: Buffer<[u32; 2]>,
+}
+
+impl Uploaded {
+    fn on_device(&self) -> Input<'_> {
+        let constraints = (!self.constraints.is_empty()).then(|| self.constraints.view());
+        Input { points: self.points.view(), constraints, checked: true }
+    }
+
+    fn bytes(&self) -> usize {
+        self.points.len() * size_of::<DVec2>() + self.constraints.len() * size_of::<[u32; 2]>()
+    }
 }
 
 /// A Vulkan device with everything that triangulating on it needs: compiled kernels (those for constraints once there are
@@ -131,7 +143,24 @@ impl Gpu {
     /// Constraints that cross are an error.
     fn triangulate_uncut(&mut self, pslg: &Pslg, options: &Options) -> Result<Output, Error> {
         let mut watch = Stopwatch::start();
-        // Taken out, so that it can be lent to a method of all the rest.
+        let input = self.upload(pslg)?;
+        watch.stage_on(Place::Transfer, "upload", [("bytes", input.bytes() as u64)]);
+        let (made, room) = std::thread::scope(|scope| {
+            let room = scope.spawn(|| result::room(pslg));
+            let made = self.work(input.on_device(), options, watch);
+            (made, room.join().unwrap_or_default())
+        });
+        self.input = Some(input);
+        let (found, report) = match made {
+            Err(Error::CrossingConstraints { .. }) => return Err(cpu::crossings(pslg, options)?),
+            other => other?,
+        };
+        let (triangulation, report) = self.result(found, report).into_parts(room)?;
+        Ok(Output { triangulation, report })
+    }
+
+    /// Brings an input to the device, into the memory of the last one, which is taken out.
+    fn upload(&mut self, pslg: &Pslg) -> Result<Uploaded, Error> {
         let mut input = match self.input.take() {
             Some(input) => input,
             None => Uploaded {
@@ -146,25 +175,7 @@ impl Gpu {
         if !constraints.is_empty() {
             self.engine.upload(input.constraints.view(), constraints)?;
         }
-        let bytes = size_of_val(points) + size_of_val(constraints);
-        watch.stage_on(Place::Transfer, "upload", [("bytes", bytes as u64)]);
-        let on_device = Input {
-            points: input.points.view(),
-            constraints: (!constraints.is_empty()).then(|| input.constraints.view()),
-            checked: true,
-        };
-        let (made, room) = std::thread::scope(|scope| {
-            let room = scope.spawn(|| result::room(pslg));
-            let made = self.work(on_device, options, watch);
-            (made, room.join().unwrap_or_default())
-        });
-        self.input = Some(input);
-        let (found, report) = match made {
-            Err(Error::CrossingConstraints { .. }) => return Err(cpu::crossings(pslg, options)?),
-            other => other?,
-        };
-        let (triangulation, report) = self.result(found, report).into_parts(room)?;
-        Ok(Output { triangulation, report })
+        Ok(input)
     }
 
     /// Triangulates points that lie on the device, and leaves the result there. They must be finite; the first that is not
@@ -181,11 +192,14 @@ impl Gpu {
 
     /// The same with constraints, pairs of points, that lie on the device too.
     ///
+    /// Where some cross and shall be split, points and constraints are fetched, cut in the host's memory and brought back, as
+    /// stages of the report say; the result lies on the device nevertheless, with [`OnDevice::added`] vertices.
+    ///
     /// # Errors
     ///
     /// [`Error::Input`] for coordinates that are not finite and indices of points that do not exist;
-    /// [`Error::CrossingConstraints`] names all pairs, for which points and constraints are fetched; [`Error::Unsupported`]
-    /// if these shall be split: that would take new points, which [`Gpu::triangulate`] makes. Else as there.
+    /// [`Error::CrossingConstraints`] names all pairs, for which points and constraints are fetched. Else as
+    /// [`Gpu::triangulate`].
     pub fn triangulate_constrained_on_device(
         &mut self,
         points: View<'_, DVec2>,
@@ -193,12 +207,11 @@ impl Gpu {
         options: &Options,
     ) -> Result<OnDevice<'_>, Error> {
         let input = Input { points, constraints: (!constraints.is_empty()).then_some(constraints), checked: false };
+        let watch = Stopwatch::start();
         match self.work(input, options, Stopwatch::start()) {
             Ok((found, report)) => Ok(self.result(found, report)),
             Err(Error::CrossingConstraints { .. }) if options.crossings == CrossingPolicy::Split => {
-                let what =
-                    "constraints cross, and are cut in the host's memory alone: `Gpu::triangulate` takes them there";
-                Err(Error::Unsupported { what: what.to_owned() })
+                self.cut(input, options, watch)
             }
             Err(Error::CrossingConstraints { .. }) => {
                 let pslg = input.download(&mut self.engine)?;

@@ -1,10 +1,11 @@
 //! A triangulation that lies on the device.
 
+use super::cut::Cut;
 use super::held::{Found, Held};
 use super::internal;
 use crate::report::Place;
-use crate::{Error, Report, StageReport};
-use polder_mesh::{Arrays, Chains, Parts, Pslg, Triangulation};
+use crate::{AddedVertex, Error, Report, StageReport};
+use polder_mesh::{Arrays, Chains, DVec2, Parts, Pslg, Triangulation};
 use polder_vulkan::{Downloads, Engine, View, room_for};
 use rayon::iter::{ParallelExtend, repeat_n};
 use std::time::Instant;
@@ -94,7 +95,19 @@ impl<'a> OnDevice<'a> {
         }
     }
 
-    /// For each input point the vertex that stands for it; nothing if there was no point.
+    /// The vertices that were added where constraints cross, and of which constraints: vertex `points + i` is `added()[i]`.
+    pub fn added(&self) -> &'a [AddedVertex] {
+        let cut = self.held.as_ref().and_then(|(held, _)| held.cut.as_ref());
+        cut.map_or(&[], Cut::added)
+    }
+
+    /// Where constraints were cut, the positions of all points and, behind them, of the [added](Self::added) vertices.
+    pub fn cut_points(&self) -> Option<View<'a, DVec2>> {
+        let (held, _) = self.held.as_ref()?;
+        held.cut.as_ref().map(Cut::points)
+    }
+
+    /// For each input point, and each added one, the vertex that stands for it; nothing if there was no point.
     pub fn representatives(&self) -> Option<View<'a, u32>> {
         self.held.as_ref().map(|(held, _)| held.canonical.representatives())
     }
@@ -142,9 +155,10 @@ impl<'a> OnDevice<'a> {
             }
         };
         self.report.constraints.name_needless(&chains);
-        let parts = Parts { representatives, chains };
+        let parts = Parts { representatives, chains: Chains::default() };
         let made = Triangulation::from_canonical(triangles, neighbors, constrained, parts);
-        *into = made.map_err(|error| Error::Internal { stage: "canonical_order", what: error.to_string() })?;
+        let made = made.map_err(|error| Error::Internal { stage: "canonical_order", what: error.to_string() })?;
+        *into = made.with_added(self.added().to_vec(), chains);
         Ok(())
     }
 

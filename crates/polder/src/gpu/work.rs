@@ -72,7 +72,7 @@ impl Gpu {
         let mut found = loop {
             self.make_room(needs)?;
             let held = self.held.as_mut().ok_or_else(|| internal("no memory was made"))?;
-            held.on_line = None;
+            (held.on_line, held.cut) = (None, None);
             let mut recording = Recording::new(&self.device);
             let reads = self.pipeline.record(&mut recording, (&mapping, &bounds), &input, held)?;
             let report = run(&mut self.engine, &recording, options)?;
