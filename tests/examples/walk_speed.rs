@@ -2,6 +2,8 @@
 //! reference. `walk_speed [family:points:constraints]...`, say `segments:1000000:100000`; `POLDER_DEVICE` names the device.
 //! Meshes are what stages 1 to 4 leave on the device.
 
+mod speed;
+
 use glam::DVec2;
 use polder_constrain::gpu::pieces::Grid;
 use polder_constrain::gpu::walk::{Input, Names, Stage};
@@ -11,27 +13,21 @@ use polder_flip::gpu::{self as flips, Arithmetic, Mesh, Tally};
 use polder_io::generate;
 use polder_mesh::Pslg;
 use polder_voronoi::{GridMapping, Options};
-use polder_vulkan::{Buffer, Device, DeviceOptions, Engine, Recording, RunOptions, View};
-use std::time::{Duration, Instant};
-
-const RUNS: usize = 10;
-/// A device that has slept runs at low clocks for a while.
-const WARM: Duration = Duration::from_millis(700);
-
-type Failure = Box<dyn std::error::Error>;
+use polder_vulkan::{Buffer, Device, Engine, Recording, RunOptions};
+use speed::{Failure, uploaded};
+use std::time::Instant;
 
 fn main() -> Result<(), Failure> {
-    let device = Device::open(&DeviceOptions::default())?;
-    println!("{}", device.info());
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let cases = if arguments.is_empty() { vec!["segments:20000:2000".to_owned()] } else { arguments };
-    // All at once: preparing takes longer than measuring.
-    let threads: Vec<_> = cases.into_iter().map(|case| std::thread::spawn(move || (input(&case), case))).collect();
-    for thread in threads {
-        let (pslg, case) = thread.join().map_err(|_| "a thread panicked")?;
-        measure(&device, &case, &pslg.ok_or("a case is family:points:constraints")?)?;
-    }
-    Ok(())
+    speed::each("segments:20000:2000", prepare, measure)
+}
+
+struct Case {
+    title: String,
+    pslg: Pslg,
+}
+
+fn prepare(case: &str) -> Result<Case, Failure> {
+    Ok(Case { title: case.to_owned(), pslg: input(case).ok_or("a case is family:points:constraints")? })
 }
 
 fn input(case: &str) -> Option<Pslg> {
@@ -130,11 +126,12 @@ fn start(device: &Device, engine: &mut Engine, points: &[DVec2]) -> Result<Start
     Ok(Start { mesh, order, vertex_of })
 }
 
-fn measure(device: &Device, case: &str, pslg: &Pslg) -> Result<(), Failure> {
+fn measure(device: &Device, case: Case) -> Result<(), Failure> {
+    let Case { title, pslg } = &case;
     let mut engine = Engine::new(device)?;
     let Start { mesh, order, vertex_of } = start(device, &mut engine, pslg.points())?;
     let count = pslg.constraints().len();
-    println!("{case}: {} points, {count} constraints", pslg.points().len());
+    println!("{title}: {} points, {count} constraints", pslg.points().len());
     let vertices = reference::kernels::name_points(&order, &vertex_of);
     let ends = reference::kernels::name_ends(&vertices, pslg.constraints());
     let positions: Vec<DVec2> = order.iter().map(|&i| pslg.points()[i as usize]).collect();
@@ -176,52 +173,11 @@ fn measure(device: &Device, case: &str, pslg: &Pslg) -> Result<(), Failure> {
             let found = pieces[..room].iter().filter(|piece| piece[2] != u32::MAX).count();
             println!("  {room} later pieces, {found} of them have a beginning");
         }
-        time(&mut engine, &recording)?;
+        speed::time(&mut engine, None, &recording)?;
     }
     Ok(())
 }
 
 fn memory(vertices: usize, constraints: usize) -> u64 {
     Stage::estimate(vertices, constraints, Stage::usual_stops(constraints)).bytes()
-}
-
-fn time(engine: &mut Engine, recording: &Recording) -> Result<(), Failure> {
-    let warm = Instant::now();
-    while warm.elapsed() < WARM {
-        engine.run(recording, &RunOptions::default())?;
-    }
-    let [mut kernels, mut clock] = [Vec::new(), Vec::new()];
-    let mut last = None;
-    for run in 0..2 * RUNS {
-        let timestamps = run % 2 == 1;
-        let start = Instant::now();
-        let report = engine.run(recording, &RunOptions { timestamps, ..RunOptions::default() })?;
-        if timestamps {
-            kernels.push(report.timings.total());
-            last = Some(report);
-        } else {
-            clock.push(start.elapsed());
-        }
-    }
-    kernels.sort();
-    clock.sort();
-    let Some(report) = last else { return Ok(()) };
-    let micros = |time: Duration| time.as_secs_f64() * 1e6;
-    let (kernels, clock) = (micros(kernels[RUNS / 2]), micros(clock[RUNS / 2]));
-    println!(
-        "  kernels {kernels:.1} us, by clock {clock:.1} us, {} dispatches, {} waits",
-        report.dispatches, report.waits
-    );
-    for (name, timing) in report.timings.iter() {
-        let us = timing.total_ns as f64 / 1e3;
-        println!("    {name:24} {us:9.1} us in {:3}", timing.count);
-    }
-    Ok(())
-}
-
-fn uploaded<T: bytemuck::Pod>(device: &Device, engine: &mut Engine, data: &[T]) -> Result<Buffer<T>, Failure> {
-    let buffer = Buffer::new(device, "uploaded", data.len())?;
-    let view: View<'_, T> = buffer.view();
-    engine.upload(view, data)?;
-    Ok(buffer)
 }
