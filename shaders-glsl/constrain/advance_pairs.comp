@@ -27,13 +27,16 @@ void main() {
         words.at[INNER] += 1u;
         words.at[INNER_ROUNDS] += 1u;
     }
+    uint held = held_pairs(words, round);
     for (uint begin = group_index() * WORKGROUP; begin < end; begin += item_stride()) {
         uint i = begin + gl_LocalInvocationIndex;
         Candidate found = NO_PAIR;
         if (i < end) {
             uvec2 entry = pairs.at[parity * stride + (i >> 2)];
             Look look = settle(links, state, parity, round, entry, i & 3u);
-            found = look.known;
+            if (i >> 2 >= held) {
+                found = look.known;
+            }
             if (look.a != NONE && found.a == NONE) {
                 found = candidate(Rows(triangles), links, positions, state, round, look.a);
             }

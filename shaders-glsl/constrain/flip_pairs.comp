@@ -29,9 +29,10 @@ void main() {
         flips_of_group[gl_LocalInvocationIndex] = 0u;
     }
     barrier();
+    uint held = held_pairs(words, round);
     for (uint i = item_index(); i < end; i += item_stride()) {
         uvec2 entry = pairs.at[parity * stride + i];
-        if (wins(links, state, parity, entry)) {
+        if (wins(links, state, parity, entry, i < held ? round - 1u : NONE)) {
             if (flip_pair(triangles, links, state, spokes, degrees, round, entry.x)) {
                 atomicAdd(flips_of_group[3], 1u);
             }

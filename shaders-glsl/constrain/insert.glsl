@@ -39,7 +39,9 @@ const uint STUCK = 5u;
 const uint WALKERS = 8u;
 // Whether any triangle got its owner in this outer round.
 const uint MARKED = 6u;
-// Sub-constraints that walked in this outer round and do not own their whole chain; and those of the round before.
+// Those of them that do walk: who leaves a hub may have to wait.
+const uint ADMITTED = 7u;
+// Sub-constraints that walked, or had to wait, in this outer round and do not own their whole chain; and those of the round before.
 const uint LOSERS = 9u;
 const uint WAITED = 10u;
 // Pairs that may be flipped in even and in odd inner rounds.
@@ -55,6 +57,12 @@ const uint INNER = 17u;
 const uint PROGRESS = 18u;
 // What had been walked before this outer round, in two words.
 const uint WALKED_BEFORE = 34u;
+// Whether there are hubs; and whether, since there are, any triangle has got another owner in this outer round.
+const uint HUBS = 21u;
+const uint STOLEN = 11u;
+// Pairs that are left from the rounds before the walks, which stand first in their list, and the last of these rounds.
+const uint HELD = 19u;
+const uint HELD_ROUND = 38u;
 // What is reported; sums have two words, the low one first.
 const uint EDGES_ALREADY = 20u;
 const uint INTERSECTIONS = 22u;
@@ -70,6 +78,14 @@ const uint WALK_FAULT = 37u;
 const uint BLOCKED = 0u;
 const uint THROUGH_VERTEX = 1u;
 const uint ASTRAY = 2u;
+
+// What there is to know of a sub-constraint, in `lost`: whether it does not own its whole chain, whether it begins at a hub,
+// and whether it does not walk in this round: it has to wait there, or is an edge. And in `firsts`: the half-edge that it
+// crosses first, with REVERSED if it begins at its second end; NONE if it is in.
+const uint LOSES = 1u;
+const uint AT_HUB = 2u;
+const uint BARRED = 4u;
+const uint REVERSED = 0x80000000u;
 
 // The word of a triangle that nobody owns, and no edge in the word of one that somebody does: `place` of the reference.
 const uint FREE = 0xffffffffu;

@@ -1,8 +1,9 @@
 // Steps 2 and 3 of an outer round: walkers claim each triangle that they cross; the least word says who owns it. Who finds a
-// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers.
+// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers. Who leaves a
+// hub and does not own the triangle there does not walk.
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#include "insert.glsl"
+#include "claims.glsl"
 #include "predicates.glsl"
 
 layout(push_constant, std430) uniform Args {
@@ -10,7 +11,6 @@ layout(push_constant, std430) uniform Args {
     ReadRows links;
     ReadPoints positions;
     ReadU32x2 sub_constraints;
-    ReadU32 degrees;
     ReadU32 walkers;
     ReadU32 firsts;
     ReadU32 runs; // by walker: where its later pieces stand, or NONE
@@ -25,21 +25,6 @@ layout(push_constant, std430) uniform Args {
 };
 
 shared uint walked;
-
-void lose(uint s) {
-    if (atomicExchange(lost.at[s], 1u) == 0u) {
-        atomicAdd(words.at[LOSERS], 1u);
-    }
-}
-
-void own(uint s, uint word, uint t, uint stamp) {
-    uint old = atomicMin(state.at[OWNED(t)], word);
-    if (old == FREE) {
-        state.at[STAMP(t)] = ~stamp;
-    } else if (!same_owner(old, word)) {
-        lose(old < word ? s : owner_of(old));
-    }
-}
 
 void main() {
     uint count = words.at[DEPART_FAULT] == NONE ? words.at[WALKERS] : 0u;
@@ -56,7 +41,9 @@ void main() {
     for (uint i = item_index(); i < end; i += item_stride()) {
         bool later = i >= count;
         uint s;
-        uint h;
+        uint begins = NONE;
+        uint h = NONE;
+        bool walks = false;
         uint number = 0u;
         uint run;
         uint rest; // the pieces from there on are those after this one
@@ -72,8 +59,10 @@ void main() {
             rest++;
         } else {
             s = walkers.at[i];
-            h = firsts.at[s];
-            run = runs.at[s];
+            begins = firsts.at[s];
+            h = begins & HALF_EDGE;
+            walks = (lost.at[s] & BARRED) == 0u;
+            run = walks ? runs.at[s] : NONE;
             rest = run;
             if (run != NONE) {
                 rest_end = pieces_end(pieces.at[run], run);
@@ -82,10 +71,14 @@ void main() {
         uint until = rest_end == 0u ? NONE : next_beginning(pieces, rest, rest_end);
         uint steps = 0u;
         // Where a piece would begin at a vertex, the one before runs through that.
-        if (!later || (h != until && (h & AT_VERTEX) == 0u)) {
+        if (later && h != until && (h & AT_VERTEX) == 0u) {
+            walks = true;
+            begins = firsts.at[s];
+        }
+        if (walks) {
             uvec2 ends = sub_constraints.at[s];
             // Words are those of the direction from the lower end to the higher one.
-            bool reversed = degrees.at[ends.y] < degrees.at[ends.x];
+            bool reversed = (begins & REVERSED) != 0u;
             ends = reversed ? ends.yx : ends;
             Point a = point_at(positions, ends.x);
             Point b = point_at(positions, ends.y);
@@ -93,13 +86,15 @@ void main() {
             uint entered = NO_EDGE;
             uint fault = ASTRAY;
             bool owns = !later;
+            bool has_lost = false;
             // No walk crosses an edge twice.
             uint most = 2u * stride;
             for (uint step = 0u; step < most; step++) {
                 uint g = link_of(links, h);
                 if (owns) {
                     uint edge = h % 3u;
-                    own(s, mine | (reversed ? entered << 2 | edge : edge << 2 | entered), h / 3u, stamp);
+                    uint word = mine | (reversed ? entered << 2 | edge : edge << 2 | entered);
+                    has_lost = own(state, lost, words, s, word, h / 3u, stamp, has_lost);
                     steps++;
                     if (h == until) {
                         fault = NONE;
@@ -118,7 +113,8 @@ void main() {
                 }
                 int side = orient2d(a, b, point_at(positions, w));
                 if (side == 0) {
-                    own(s, mine | (reversed ? entered << 2 | NO_EDGE : NO_EDGE << 2 | entered), g / 3u, stamp);
+                    uint word = mine | (reversed ? entered << 2 | NO_EDGE : NO_EDGE << 2 | entered);
+                    has_lost = own(state, lost, words, s, word, g / 3u, stamp, has_lost);
                     steps++;
                     fault = w == ends.y ? NONE : THROUGH_VERTEX;
                     if (run != NONE) {

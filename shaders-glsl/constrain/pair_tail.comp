@@ -42,7 +42,7 @@ uint limit_of_round() {
     }
     uint64_t before = packUint2x32(uvec2(words.at[WALKED_BEFORE], words.at[WALKED_BEFORE + 1u]));
     uint64_t walked = packUint2x32(uvec2(words.at[WALKED], words.at[WALKED + 1u])) - before;
-    uint64_t walkers = uint64_t(max(words.at[WALKERS], 1u));
+    uint64_t walkers = uint64_t(max(words.at[ADMITTED], 1u));
     uint64_t late = uint64_t(words.at[OUTER_ROUNDS] / usual_rounds);
     uint64_t times = 1ul + max(walked / (uint64_t(long_chain) * walkers), late);
     return inner * uint(min(times, uint64_t(most_times)));
@@ -88,6 +88,7 @@ void look(bool goes_on, bool fails) {
     words.at[PROGRESS] = progress;
     words.at[MARKED] = 0u;
     words.at[WALKERS] = 0u;
+    words.at[ADMITTED] = 0u;
     words.at[GOES_ON] = uint(goes_on);
     words.at[LEFT] = fails || words.at[STUCK] != 0u ? 0u : left;
 }
@@ -113,12 +114,13 @@ void main() {
         rounds++;
         round++;
         taken += min(count, NONE - taken);
+        uint held = held_pairs(words, round);
         if (rank == 0u) {
             next_count = 0u;
         }
         for (uint i = rank; i < count; i += WORKGROUP) {
             uvec2 entry = pairs.at[parity * stride + i];
-            if (wins(links, state, parity, entry)) {
+            if (wins(links, state, parity, entry, i < held ? round - 1u : NONE)) {
                 if (flip_pair(triangles, links, state, spokes, degrees, round, entry.x)) {
                     atomicAdd(flips[3], 1u);
                 }
@@ -130,7 +132,10 @@ void main() {
         for (uint i = rank; i < 4u * count; i += WORKGROUP) {
             uvec2 entry = pairs.at[parity * stride + (i >> 2)];
             Look look = settle(links, state, parity, round, entry, i & 3u);
-            Candidate found = look.known;
+            Candidate found = NO_PAIR;
+            if (i >> 2 >= held) {
+                found = look.known;
+            }
             if (look.a != NONE && found.a == NONE) {
                 found = candidate(triangles, links, positions, state, round, look.a);
             }

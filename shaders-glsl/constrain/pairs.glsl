@@ -30,14 +30,30 @@ void claim(WORDS state, uint parity, Candidate pair) {
 }
 
 // Whether a candidate has all that it claimed. Who does not have the first triangle may read what another changes, and
-// does not look at it.
-bool wins(MESH links, WORDS state, uint parity, uvec2 entry) {
+// does not look at it. A pair that was held during walks does not win if any of its triangles got another owner since: `since`
+// is the round before these, NONE for others.
+bool wins(MESH links, WORDS state, uint parity, uvec2 entry, uint since) {
     uint key = key_of(entry);
     uint b = entry.y & NO_B;
+    if (since != NONE && stamp_of(state, entry.x / 3u) >> 2 >= since) {
+        return false;
+    }
     if (state.at[CLAIM(entry.x / 3u, parity)] != key || (b != NO_B && state.at[CLAIM(b, parity)] != key)) {
         return false;
     }
-    return state.at[CLAIM(twin(links, entry.x) / 3u, parity)] == key;
+    uint c = twin(links, entry.x) / 3u;
+    if (since != NONE) {
+        uint latest = max(stamp_of(state, c), b == NO_B ? 0u : stamp_of(state, b));
+        if (latest >> 2 >= since) {
+            return false;
+        }
+    }
+    return state.at[CLAIM(c, parity)] == key;
+}
+
+// How many pairs, the first in the list of this round, were held during walks in which triangles got other owners.
+uint held_pairs(WORDS words, uint round) {
+    return words.at[STOLEN] != 0u && words.at[HELD_ROUND] + 1u == round ? words.at[HELD] : 0u;
 }
 
 bool is_flipped(uint stamp, uint round) {

@@ -11,6 +11,7 @@ layout(push_constant, std430) uniform Args {
     ReadU32x2 ends;   // by walker
     ReadU32 list;     // walkers
     ReadU32 listed;   // how many
+    MaybeReadU32 barred; // by walker: whether it has to wait, in the third bit
     WriteU32 runs;    // by walker: where its later pieces stand, or NONE
     U32x4 pieces;
     U32 piece_count;  // also those for which there is no room
@@ -23,11 +24,16 @@ layout(push_constant, std430) uniform Args {
 };
 
 const uint MOST_PIECES = 4096u;
+// As in insert.glsl.
+const uint BARRED = 4u;
 
 void main() {
     uint count = min(listed.at[0], limit);
     for (uint i = item_index(); i < count; i += item_stride()) {
         uint walker = list.at[i];
+        if (present(barred) && (barred.at[walker] & BARRED) != 0u) {
+            continue;
+        }
         uvec2 both = ends.at[walker];
         i64vec2 across = abs(place_of(point_at(positions, both.y), exponent, low_x, low_y) -
             place_of(point_at(positions, both.x), exponent, low_x, low_y));

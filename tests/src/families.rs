@@ -45,6 +45,8 @@ pub fn constrained_families(n: usize, seed: u64) -> Vec<(&'static str, Pslg)> {
         ("spiral with constraints", make::spiral(n)),
         ("comb with constraints", make::comb(n)),
         ("fan", make::fan(n / 2, seed)),
+        ("hub", hub(n, n / 10, seed)),
+        ("rows", rows(n, n / 10, seed)),
         ("through vertices", make::through_vertices(n / 2, seed)),
         ("nested rings", make::nested_rings((n / 4).isqrt(), 1)),
         ("sparse nested rings", make::nested_rings((n / 4).isqrt(), 3)),
@@ -54,6 +56,23 @@ pub fn constrained_families(n: usize, seed: u64) -> Vec<(&'static str, Pslg)> {
         ("tiny segments", scaled(make::segments(n, n / 5, seed), f64::from_bits(23 << 52))),
         ("shifted segments", shifted(make::segments(n, n / 5, seed))),
     ]
+}
+
+/// Constraints from one point among uniform ones to others.
+fn hub(n: usize, constraints: usize, seed: u64) -> Pslg {
+    let mut points = make::uniform(n, seed).into_parts().0;
+    points.push(DVec2::new(0.5, 0.5));
+    build(points, (0..constraints as u32).map(|i| [i, n as u32]).collect())
+}
+
+/// Parallel constraints over dense points, all of them through the whole square.
+fn rows(n: usize, constraints: usize, seed: u64) -> Pslg {
+    let mut points = make::uniform(n, seed).into_parts().0;
+    for row in 0..constraints {
+        let y = (row as f64 + 0.5) / constraints as f64;
+        points.extend([DVec2::new(-0.1, y), DVec2::new(1.1, y)]);
+    }
+    build(points, (0..constraints as u32).map(|row| [n as u32 + 2 * row, n as u32 + 2 * row + 1]).collect())
 }
 
 fn points_of(pslg: Pslg) -> Pslg {

@@ -69,12 +69,12 @@ fn a_missing_constraint_shows() {
 }
 
 fn many(fan: usize, through: usize, along: usize) {
-    // Many constraints at one vertex: all walks of all rounds together are a few times as long as the first ones.
+    // Many constraints at one vertex: all walks of all rounds together are shorter than if each walked once at the beginning.
     let pslg = generate::fan(fan, 1);
     let mut start = Start::stage_4(&pslg);
     let (walk, insert, _) = reference::constrain(&mut start.mesh, &start.positions, &start.constraints, 100).unwrap();
     assert_eq!(walk.sub_constraints.len(), fan);
-    assert!(insert.walked < 16 * insert.intersections, "{insert}, walked {}", insert.walked);
+    assert!(3 * insert.walked < walk.intersections(), "{insert}, walked {}", insert.walked);
     let edges = (0..3 * start.mesh.slots() as u32).filter(|&h| h < start.mesh.twin(h) && start.mesh.is_constrained(h));
     assert_eq!(edges.count(), fan);
 

@@ -10,7 +10,7 @@ pub struct InsertReport {
     pub sub_constraints: u64,
     /// Those that were edges before the first flip.
     pub edges_already: u64,
-    /// Pairs of a sub-constraint and a triangle that it crosses, before the first flip.
+    /// Pairs of a sub-constraint and a triangle that it crosses, before the first flip; without those that wait at hubs first.
     pub intersections: u64,
     /// Triangles visited by the walks of all outer rounds.
     pub walked: u64,

@@ -3,6 +3,25 @@
 use polder_vulkan::{View, define_kernel};
 
 define_kernel! {
+    /// Who leaves a hub and did not get the triangle there has to wait: it would not get its whole chain.
+    AdmitWalks(AdmitWalksArgs) = "admit_walks";
+    buffers {
+        0: read walkers: View<'a, u32>,
+        8: read firsts: View<'a, u32>,
+        16: both lost: View<'a, u32>,
+        24: both state: View<'a, u32>,
+        32: both words: View<'a, u32>,
+    }
+    values {}
+    argument_bytes 40;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256];
+    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
+    source "e425285892cf3be07af40e6fb282efe0c4fb0f148a553b4586b3213a8b1694d3";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
     /// The end of an inner round and the beginning of the next in one: renews the links around all flips, gives claimed triangles
     /// back, and looks at the triangles around flips, which claim what they need for the next round.
     AdvancePairs(AdvancePairsArgs) = "advance_pairs" and "advance_pairs.integers";
@@ -22,7 +41,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "62ae4c88270b4e11fa7d5f17fb9d3106c5438a069c3ecbea89abe275e4c37b41";
+    source "fa8cd1fa4ebbde6f58b5026423796ad5895c4d34cf01e664a967ea9e71bbb385";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -52,37 +71,39 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "321c44503642b8a431e01485797f516a7761bcd128ca6a90a687bfc5829ce31d";
+    source "3a98ea946ca78cfd29db7dcb750200bea8b5171b591c2dfe67869e77e8a213c1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
 define_kernel! {
-    /// Step 1 of an outer round: each sub-constraint that does not own its whole chain leaves the star of the end with fewer edges.
-    /// One that is an edge becomes a constrained one; the others are listed with the half-edge that they cross first.
+    /// Step 1 of an outer round: each sub-constraint that is to walk leaves the star of one of its ends: of a hub, or else of the end
+    /// with fewer edges. In the first round it turns out which vertices are hubs. Who leaves a hub claims the triangle there. What
+    /// has become an edge becomes a constrained one.
     DepartWalks(DepartWalksArgs) = "depart_walks" and "depart_walks.integers";
     buffers {
         0: read triangles: View<'a, u32>,
         8: both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read sub_constraints: View<'a, [u32; 2]>,
-        32: maybe_read counter: Option<View<'a, u32>>,
-        40: read spokes: View<'a, u32>,
-        48: read degrees: View<'a, u32>,
-        56: written walkers: View<'a, u32>,
-        64: written firsts: View<'a, u32>,
+        32: read spokes: View<'a, u32>,
+        40: read degrees: View<'a, u32>,
+        48: read counts: View<'a, u32>,
+        56: read walkers: View<'a, u32>,
+        64: both firsts: View<'a, u32>,
         72: both lost: View<'a, u32>,
-        80: both words: View<'a, u32>,
+        80: both state: View<'a, u32>,
+        88: both words: View<'a, u32>,
     }
     values {
-        88: limit: u32,
-        92: most: u32,
+        96: most: u32,
+        100: crowd: u32,
+        104: most_spokes: u32,
     }
-    argument_bytes 96;
+    argument_bytes 108;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
-    capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
-        "PhysicalStorageBufferAddresses", "Shader"];
-    source "c5b2ec33002feee5a4081dcfbb1d236fa7d66bf4537ded71ec56ce73adcbe1ba";
+    capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "e56d2de87d757d6e9c7f791e088fd0aa6ab52f43529e0033620690000a885b31";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -101,23 +122,24 @@ define_kernel! {
         24: read ends: View<'a, [u32; 2]>,
         32: read spokes: View<'a, u32>,
         40: read degrees: View<'a, u32>,
-        48: read seeds: View<'a, u32>,
-        56: both pieces: View<'a, [u32; 4]>,
-        64: read piece_count: View<'a, u32>,
+        48: maybe_read firsts: Option<View<'a, u32>>,
+        56: read seeds: View<'a, u32>,
+        64: both pieces: View<'a, [u32; 4]>,
+        72: read piece_count: View<'a, u32>,
     }
     values {
-        72: low_x: i64,
-        80: low_y: i64,
-        88: exponent: i32,
-        92: width: u32,
-        96: height: u32,
-        100: piece_limit: u32,
+        80: low_x: i64,
+        88: low_y: i64,
+        96: exponent: i32,
+        100: width: u32,
+        104: height: u32,
+        108: piece_limit: u32,
     }
-    argument_bytes 104;
+    argument_bytes 112;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "34b165469237a39b3e44fc7181cd6957fa7b1f9bc343cbe1cba1cdfcdfb34251";
+    source "815235d493f8922cd71fb66e24777bd0b92cfe7e2d3a1275ad1e203810c0fd1d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -192,7 +214,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "d690951647845762da168339ef66ab4c6c41a2a91457dce3e994e7c51165df4e";
+    source "026af5d7c9eb7c74198b93bb37e769b531451432e46bab08796a4b3826fdaa7e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -222,34 +244,63 @@ define_kernel! {
 }
 
 define_kernel! {
+    /// Which sub-constraints are to walk in an outer round: those that do not own their whole chain. In the first round all that are no
+    /// edges; those that are become constrained ones. It also counts how many end at each vertex.
+    ListWalkers(ListWalkersArgs) = "list_walkers";
+    buffers {
+        0: read triangles: View<'a, u32>,
+        8: both links: View<'a, u32>,
+        16: read sub_constraints: View<'a, [u32; 2]>,
+        24: maybe_read counter: Option<View<'a, u32>>,
+        32: read spokes: View<'a, u32>,
+        40: read degrees: View<'a, u32>,
+        48: written walkers: View<'a, u32>,
+        56: both lost: View<'a, u32>,
+        64: both counts: View<'a, u32>,
+        72: both words: View<'a, u32>,
+    }
+    values {
+        80: limit: u32,
+        84: most: u32,
+        88: crowd: u32,
+    }
+    argument_bytes 92;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256];
+    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
+    source "a827ae8d145c85070b80fac206a4b94c861174d4298dfbaa36fb0e3275924f68";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
     /// Steps 2 and 3 of an outer round: walkers claim each triangle that they cross; the least word says who owns it. Who finds a
-    /// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers.
+    /// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers. Who leaves a
+    /// hub and does not own the triangle there does not walk.
     MarkChains(MarkChainsArgs) = "mark_chains" and "mark_chains.integers";
     buffers {
         0: read triangles: View<'a, u32>,
         8: read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read sub_constraints: View<'a, [u32; 2]>,
-        32: read degrees: View<'a, u32>,
-        40: read walkers: View<'a, u32>,
-        48: read firsts: View<'a, u32>,
-        56: read runs: View<'a, u32>,
-        64: both pieces: View<'a, [u32; 4]>,
-        72: read piece_count: View<'a, u32>,
-        80: written piece_walked: View<'a, u32>,
-        88: both lost: View<'a, u32>,
-        96: both state: View<'a, u32>,
-        104: both words: View<'a, u32>,
+        32: read walkers: View<'a, u32>,
+        40: read firsts: View<'a, u32>,
+        48: read runs: View<'a, u32>,
+        56: both pieces: View<'a, [u32; 4]>,
+        64: read piece_count: View<'a, u32>,
+        72: written piece_walked: View<'a, u32>,
+        80: both lost: View<'a, u32>,
+        88: both state: View<'a, u32>,
+        96: both words: View<'a, u32>,
     }
     values {
-        112: stride: u32,
-        116: piece_limit: u32,
+        104: stride: u32,
+        108: piece_limit: u32,
     }
-    argument_bytes 120;
+    argument_bytes 112;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "54d51cfe9c2668cad8fc65d31f8e8ac0faca16fea832f6d8d456f12421cf45d6";
+    source "f6518ff4da329744170ab8e76de1b8f4574da057d2bc8876e57cbecc22b7ae1d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -323,7 +374,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "fe1ebcb480586763cf35272f4215bcfc4b406f6dcef64bd3197d4670e6f92746";
+    source "d3d6a6830811f7d17fe0b1a27cec6e371820ced0a36cf33d69ac9d9b1671e67d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -361,23 +412,24 @@ define_kernel! {
         8: read ends: View<'a, [u32; 2]>,
         16: read list: View<'a, u32>,
         24: read listed: View<'a, u32>,
-        32: written runs: View<'a, u32>,
-        40: both pieces: View<'a, [u32; 4]>,
-        48: both piece_count: View<'a, u32>,
+        32: maybe_read barred: Option<View<'a, u32>>,
+        40: written runs: View<'a, u32>,
+        48: both pieces: View<'a, [u32; 4]>,
+        56: both piece_count: View<'a, u32>,
     }
     values {
-        56: low_x: i64,
-        64: low_y: i64,
-        72: exponent: i32,
-        76: limit: u32,
-        80: piece_limit: u32,
-        84: piece_length: u32,
+        64: low_x: i64,
+        72: low_y: i64,
+        80: exponent: i32,
+        84: limit: u32,
+        88: piece_limit: u32,
+        92: piece_length: u32,
     }
-    argument_bytes 88;
+    argument_bytes 96;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "a1c21641cb3bac59dd8d3b5ca95d2ba1ef4aaee30d49c911e3fd1b8ad0f90d52";
+    source "adf9ac1787fea1f6798ecb02dbf3add14bb686190a1e04e475d95bd87186a426";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -2,12 +2,14 @@
 //!
 //! An outer round is [`reference::insert`](crate::reference::insert())'s, in these dispatches:
 //!
-//! 1. *Depart.* Each sub-constraint that does not own its whole chain leaves the star of one of its ends: first by the numbers
-//!    of vertices alone, which finds those that are edges, then by signs.
+//! 1. *Depart.* Sub-constraints that do not own their whole chain are listed; before the first round those that are edges are found
+//!    by the numbers of vertices alone. The others leave the star of one of their ends. Those that begin at a hub claim the
+//!    triangle there; who does not get it does not walk in this round.
 //! 2. *Mark.* The others walk, and each triangle that they cross takes the least word by an atomic minimum. The word has the
 //!    owner's priority above and the edges by which the owner comes in and goes out below. Who finds a lower word, or has its
 //!    own replaced, does not own its whole chain; so that is known without counting. Who finds a triangle free stamps
-//!    it: later rounds never change an owner, as who crosses the triangles of a flip has crossed those before it.
+//!    it: later rounds never change an owner, as who crosses the triangles of a flip has crossed those before it. Only who has
+//!    waited at a hub has not claimed what it crosses before, and stamps what it takes from others.
 //!    Long walks go in pieces, each of which claims its part.
 //! 3. *Configure.* The triangles that got their owner are looked at, and those beside them along the chain: found by going
 //!    through all triangles, so that pairs stand in the order of triangles and what is nearby is worked on together. Pairs
@@ -23,9 +25,9 @@
 //! Departures from the reference, none of which shows in the result: only pairs are listed, not triangles; a pair that was not
 //! flipped and of which no triangle has changed is not looked at again.
 
-use super::pieces::{self, Grid, Walkers};
+use super::pieces::{self, Begun, Grid, Walkers};
 use crate::kernels::*;
-use crate::reference::{INNER_ROUNDS, LONG_CHAIN, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS};
+use crate::reference::{HUB, INNER_ROUNDS, LONG_CHAIN, MOST_SPOKES, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS};
 use crate::{Fault, InsertReport};
 use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_vulkan::{
@@ -106,6 +108,11 @@ pub struct Buffers {
 }
 
 impl Buffers {
+    /// Before there are pairs: by vertex how many sub-constraints end there.
+    fn counts(&self, vertices: usize) -> Result<View<'_, u32>, Error> {
+        self.pairs.view().cast::<u32>().slice(0..vertices)
+    }
+
     /// Gives all of it; see [`Buffer::give`].
     pub fn give(&self, pool: &Pool) {
         for words in [&self.walkers, &self.firsts, &self.runs, &self.lost, &self.piece_walked] {
@@ -167,7 +174,9 @@ pub struct Stage {
     device: Device,
     pace: Pace,
     spokes: Kernel<FindSpokes>,
+    list: Kernel<ListWalkers>,
     depart: Kernel<DepartWalks>,
+    admit: Kernel<AdmitWalks>,
     mark: Kernel<MarkChains>,
     configure: Kernel<ConfigurePairs>,
     flip: Kernel<FlipPairs>,
@@ -197,7 +206,9 @@ impl Stage {
             device: device.clone(),
             pace: if device.info().kind == DeviceKind::Cpu { Pace::CPU } else { Pace::GPU },
             spokes: Kernel::new(device, &workgroup)?,
+            list: Kernel::new(device, &workgroup)?,
             depart: arithmetic.kernel(device, &workgroup)?,
+            admit: Kernel::new(device, &workgroup)?,
             mark: arithmetic.kernel(device, &workgroup)?,
             configure: arithmetic.kernel(device, &workgroup)?,
             flip: Kernel::new(device, &workgroup)?,
@@ -302,13 +313,17 @@ impl Stage {
             let why = format!("{why}; {vertices} vertices, spokes of {with_spokes}");
             return Err(Error::Recording { command: "constrain", why });
         }
+        if count > 0 && vertices > 4 * buffers.slots {
+            let why = format!("{vertices} vertices, and slots for a mesh over no more than {}", 4 * buffers.slots);
+            return Err(Error::Recording { command: "constrain", why });
+        }
         let piece_room = buffers.piece_walked.len();
         if let Some((_, list)) = input.pieces.filter(|(_, list)| list.pieces().len() > piece_room) {
             let why = format!("{} pieces; buffers for {piece_room}", list.pieces().len());
             return Err(Error::Recording { command: "constrain", why });
         }
         if count > 0 {
-            Self::record_start(recording, buffers)?;
+            Self::record_start(recording, buffers, vertices)?;
             if input.pieces.is_none() {
                 recording.fill(buffers.runs.view(), NONE);
                 recording.fill(buffers.no_pieces.count(), 0);
@@ -331,10 +346,11 @@ impl Stage {
         Ok(Read(recording.read(buffers.words.view())))
     }
 
-    fn record_start(recording: &mut Recording, buffers: &Buffers) -> Result<(), Error> {
+    fn record_start(recording: &mut Recording, buffers: &Buffers, vertices: usize) -> Result<(), Error> {
         recording.fill(buffers.words.view(), 0);
         recording.fill(buffers.words.slice(Word::DepartFault as usize..WORDS)?, NONE);
         recording.fill(buffers.state.view().cast(), NONE);
+        recording.fill(buffers.counts(vertices)?, 0);
         Ok(())
     }
 
@@ -356,27 +372,48 @@ impl Stage {
         let (pieces, piece_count, piece_limit) = (list.pieces(), list.count(), list.pieces().len() as u32);
         let sub_constraints = input.sub_constraints.cast();
         let pairs = buffers.pairs.view().cast();
+        let counts = buffers.counts(mesh.vertices())?;
         let (stride, limit) = (buffers.slots as u32, input.sub_constraints.len() as u32);
         let most = (3 * mesh.capacity()) as u32;
-        let arguments = DepartWalksArgs {
+        let arguments = ListWalkersArgs {
             triangles,
             links,
-            positions,
             sub_constraints,
             counter: input.count,
             spokes,
             degrees,
             walkers,
-            firsts,
             lost,
+            counts,
             words,
             limit,
             most,
+            crowd: HUB,
+        };
+        recording.dispatch(&self.list, groups, &arguments);
+        let arguments = DepartWalksArgs {
+            triangles,
+            links,
+            positions,
+            sub_constraints,
+            spokes,
+            degrees,
+            counts,
+            walkers,
+            firsts,
+            lost,
+            state,
+            words,
+            most,
+            crowd: HUB,
+            most_spokes: MOST_SPOKES,
         };
         recording.dispatch(&self.depart, groups, &arguments);
+        recording.dispatch(&self.admit, groups, &AdmitWalksArgs { walkers, firsts, lost, state, words });
         if let Some((grid, list)) = input.pieces {
             let listed = buffers.words.slice(Word::Walkers as usize..Word::Walkers as usize + 1)?;
-            let walkers = Walkers { ends: input.sub_constraints, list: walkers, listed, runs, spokes, degrees };
+            let begun = Some(Begun { firsts, barred: lost });
+            let walkers = Walkers { ends: input.sub_constraints, list: walkers, listed, runs, spokes, degrees, begun };
             self.pieces.record(recording, mesh, &walkers, grid, list);
         }
         let arguments = MarkChainsArgs {
@@ -384,7 +421,6 @@ impl Stage {
             links,
             positions,
             sub_constraints,
-            degrees,
             walkers,
             firsts,
             runs,

@@ -214,6 +214,17 @@ pub struct Walkers<'a> {
     pub spokes: View<'a, u32>,
     /// By vertex how many do.
     pub degrees: View<'a, u32>,
+    /// For walkers that begin elsewhere, or do not walk although they are listed.
+    pub begun: Option<Begun<'a>>,
+}
+
+/// How insertion has its walkers begin.
+#[derive(Clone, Copy, Debug)]
+pub struct Begun<'a> {
+    /// By walker: the highest bit says that it begins at its second vertex.
+    pub firsts: View<'a, u32>,
+    /// By walker: the third bit says that it does not walk.
+    pub barred: View<'a, u32>,
 }
 
 /// The kernels on one device.
@@ -286,6 +297,7 @@ impl Stage {
             ends,
             list: walkers.list,
             listed: walkers.listed,
+            barred: walkers.begun.map(|begun| begun.barred),
             runs: walkers.runs,
             pieces,
             piece_count,
@@ -304,6 +316,7 @@ impl Stage {
             ends,
             spokes: walkers.spokes,
             degrees: walkers.degrees,
+            firsts: walkers.begun.map(|begun| begun.firsts),
             seeds: buffers.seeds.view().cast(),
             pieces,
             piece_count,

@@ -45,6 +45,29 @@ pub(super) fn depart_by_turning(mesh: &GhostMesh, positions: &[DVec2], start: u3
     None
 }
 
+/// The same, beginning in the triangle in which it left the vertex before, if that is still there: `hint` is a half-edge of it.
+pub(super) fn depart_from(
+    mesh: &GhostMesh,
+    positions: &[DVec2],
+    hint: u32,
+    spoke: u32,
+    target: u32,
+) -> Option<Departure> {
+    let v = mesh.origin(spoke);
+    let half_edges = if hint == NONE { [spoke; 3] } else { [hint, next(hint), prev(hint)] };
+    let at_hint = half_edges.into_iter().find(|&h| mesh.origin(h) == v);
+    let mut start = at_hint.unwrap_or(spoke);
+    let at = |v: u32| positions[v as usize];
+    for _ in 0..3 * mesh.slots() {
+        let w = mesh.destination(start);
+        if w == GHOST || orient2d(at(v), at(w), at(target)) != Sign::Negative {
+            break;
+        }
+        start = mesh.rotate_cw(start);
+    }
+    depart_by_turning(mesh, positions, start, target)
+}
+
 /// A spoke of every vertex, and the spokes of *hubs* (vertices with many of them) in order, to be searched by halving:
 /// else a hub through which many constraints run would cost its number of spokes for each.
 pub(super) struct Fans {

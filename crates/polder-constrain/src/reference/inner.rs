@@ -46,6 +46,8 @@ pub(super) struct Inner {
     /// For each triangle the least claim, the highest number between rounds.
     claims: Vec<u32>,
     candidates: Vec<Candidate>,
+    /// Pairs that might have been flipped before the walks of this outer round, and their claims.
+    held: Vec<(u32, [u32; 3])>,
     /// The triangles A to look at in the next round, and whether a triangle is one of them.
     work: Vec<u32>,
     listed: Vec<bool>,
@@ -60,6 +62,7 @@ impl Inner {
             configurations: vec![None; slots],
             claims: vec![UNCLAIMED; slots],
             candidates: Vec::new(),
+            held: Vec::new(),
             work: Vec::new(),
             listed: vec![false; slots],
             trial: Trial::default(),
@@ -90,6 +93,12 @@ impl Insertion<'_> {
             }
             candidates.push(candidate);
         }
+        for (key, triangles) in &self.inner.held {
+            for &t in triangles.iter().filter(|&&t| t != NONE) {
+                let claim = &mut self.inner.claims[t as usize];
+                *claim = (*claim).min(*key);
+            }
+        }
         // Step 3. Whether a candidate wins is settled by the claims, which flips do not touch.
         let wins = |c: &Candidate| self.claimed(*c).all(|t| self.inner.claims[t as usize] == c.key());
         let mut winners: Vec<Candidate> = candidates.iter().copied().filter(wins).collect();
@@ -101,6 +110,9 @@ impl Insertion<'_> {
             for t in self.claimed(candidate) {
                 self.inner.claims[t as usize] = UNCLAIMED;
             }
+        }
+        for t in std::mem::take(&mut self.inner.held).into_iter().flat_map(|(_, t)| t).filter(|&t| t != NONE) {
+            self.inner.claims[t as usize] = UNCLAIMED;
         }
         // Step 4.
         work.clear();
@@ -115,6 +127,17 @@ impl Insertion<'_> {
         self.inner.candidates = candidates;
         self.report.inner_rounds += u64::from(!winners.is_empty());
         winners.len() as u64
+    }
+
+    /// The pairs that may be flipped now claim their triangles, whoever owns these after the walks.
+    pub(super) fn hold_pairs(&mut self) {
+        let held = self.inner.work.iter().filter_map(|&a| {
+            let (_, own) = self.owned().next_pair(a as usize)?;
+            let before = |b: u32| self.owned().next_pair(b as usize).map(|(_, c)| c);
+            let pair = self.owned().candidate(a as usize, own, before, self.inner.trial.blind)?;
+            Some((pair.key(), [a, self.mesh.twin(pair.h) / 3, pair.b]))
+        });
+        self.inner.held = held.collect();
     }
 
     fn list(&mut self, t: u32) {
@@ -156,7 +179,6 @@ impl Insertion<'_> {
         let Some(s) = place::owner(self.owner[t]) else { return };
         for (slot, word) in [t, u].into_iter().zip(words_of_flip(s, [k, j], [near_side, far_side])) {
             self.owner[slot] = word;
-            self.owned_count[s as usize] -= u32::from(word == FREE);
         }
         if near_side == 0 && far_side == 0 {
             self.mesh.set_constrained(diagonal, true);

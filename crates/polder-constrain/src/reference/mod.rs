@@ -35,7 +35,9 @@ pub use configuration::{Configuration, TriangleChain, triangle_chain};
 pub use crossings::crossings;
 #[doc(hidden)]
 pub use inner::Trial;
-pub use insert::{INNER_ROUNDS, Insertion, LONG_CHAIN, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS, insert};
+pub use insert::{
+    HUB, INNER_ROUNDS, Insertion, LONG_CHAIN, MOST_SPOKES, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS, insert,
+};
 pub use intersection::intersection;
 pub use keys::{claim_key, owner_of, owner_priority};
 pub use near::near;

@@ -292,6 +292,7 @@ impl Stage {
             runs: buffers.runs()?,
             spokes,
             degrees: buffers.degrees.view(),
+            begun: None,
         };
         self.pieces.record(recording, mesh, &walkers, grid, &buffers.pieces);
         Ok(())

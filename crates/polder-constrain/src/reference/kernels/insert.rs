@@ -2,7 +2,8 @@
 //!
 //! Lists are in the order in which their items come here; on a device they may be in any.
 
-use super::super::fan::{Departure, depart_by_turning, enter, leave};
+use super::super::fan::{Departure, depart_by_turning, depart_from, enter, leave};
+use super::super::insert::{HUB, MOST_SPOKES};
 use super::super::pairs::{Candidate, Owned, words_of_flip};
 use super::super::place::{self, FREE};
 use crate::Fault;
@@ -28,12 +29,14 @@ pub struct Scratch {
     pub stamps: Vec<u32>,
     /// The number of the last round.
     pub round: u32,
+    /// How many pairs, the first in their list, were held during walks in which triangles got other owners.
+    pub held: usize,
 }
 
 impl Scratch {
     /// For so many slots, before the first round.
     pub fn new(slots: usize) -> Self {
-        Self { owner: vec![FREE; slots], claims: vec![NONE; slots], stamps: vec![0; slots], round: 0 }
+        Self { owner: vec![FREE; slots], claims: vec![NONE; slots], stamps: vec![0; slots], round: 0, held: 0 }
     }
 
     fn flipped(&self, t: u32) -> Option<u32> {
@@ -52,31 +55,88 @@ impl Scratch {
     }
 }
 
+/// What is known of a sub-constraint: the half-edge that it crosses first, whether it begins at its second end, and whether it
+/// begins at a hub.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Begun {
+    /// See there.
+    pub first: u32,
+    /// See there.
+    pub reversed: bool,
+    /// See there.
+    pub at_hub: bool,
+}
+
+/// Which of these sub-constraints are no edges, how many are and become constrained ones, and how many of the others end at each
+/// vertex.
+pub fn list_walkers(
+    mesh: &mut GhostMesh,
+    positions: &[DVec2],
+    sub_constraints: &[[u32; 2]],
+    takes: &[u32],
+    spokes: &[u32],
+) -> (Vec<u32>, u32, Vec<u32>) {
+    let (mut walkers, mut inserted, mut counts) = (Vec::new(), 0, vec![0; positions.len()]);
+    for &s in takes {
+        let [a, b] = sub_constraints[s as usize];
+        match depart_by_turning(mesh, positions, spokes[a as usize], b) {
+            Some(Departure::Along(h)) if mesh.destination(h) == b => {
+                mesh.set_constrained(h, true);
+                inserted += 1;
+            }
+            _ => {
+                walkers.push(s);
+                [a, b].into_iter().for_each(|v| counts[v as usize] += 1);
+            }
+        }
+    }
+    (walkers, inserted, counts)
+}
+
 /// What departures led to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Departed {
-    /// Sub-constraints that walk, and the half-edge that they cross first.
-    pub walkers: Vec<[u32; 2]>,
+    /// Those that walk, or have to wait at a hub.
+    pub walkers: Vec<u32>,
     /// How many are edges.
     pub inserted: u32,
+    /// What claims at hubs led to.
+    pub marked: Marked,
     /// The lowest that could not depart.
     pub fault: Option<Fault>,
 }
 
-/// Step 1 of an outer round, of these sub-constraints.
+/// Step 1 of an outer round, of these sub-constraints; with how many end at each vertex, if it is the first.
 pub fn depart_walks(
     mesh: &mut GhostMesh,
     positions: &[DVec2],
     sub_constraints: &[[u32; 2]],
-    takes: impl IntoIterator<Item = u32>,
+    (walkers, counts): (&[u32], Option<&[u32]>),
+    begun: &mut [Begun],
     [spokes, degrees]: [&[u32]; 2],
+    scratch: &mut Scratch,
 ) -> Departed {
     let mut departed = Departed::default();
-    for s in takes {
-        let [a, b] = sub_constraints[s as usize];
-        let (from, to) = if degrees[b as usize] < degrees[a as usize] { (b, a) } else { (a, b) };
-        match depart_by_turning(mesh, positions, spokes[from as usize], to) {
-            Some(Departure::Across(h)) => departed.walkers.push([s, h]),
+    for &s in walkers {
+        let ends = sub_constraints[s as usize];
+        let before = begun[s as usize];
+        let is_hub =
+            |&v: &u32| counts.is_some_and(|counts| counts[v as usize] >= HUB && degrees[v as usize] <= MOST_SPOKES);
+        let (mut at_hub, mut reversed, mut hint) = (false, degrees[ends[1] as usize] < degrees[ends[0] as usize], NONE);
+        if counts.is_none() && before.at_hub {
+            (at_hub, reversed, hint) = (true, before.reversed, before.first);
+        } else if let Some(end) = ends.iter().position(is_hub) {
+            (at_hub, reversed) = (true, end == 1);
+        }
+        let [from, to] = if reversed { [ends[1], ends[0]] } else { ends };
+        match depart_from(mesh, positions, hint, spokes[from as usize], to) {
+            Some(Departure::Across(first)) => {
+                departed.walkers.push(s);
+                begun[s as usize] = Begun { first, reversed, at_hub };
+                if at_hub {
+                    own(s, first, [0, -1, 1], reversed, scratch, &mut departed.marked);
+                }
+            }
             Some(Departure::Along(h)) if mesh.destination(h) == to => {
                 mesh.set_constrained(h, true);
                 departed.inserted += 1;
@@ -88,6 +148,16 @@ pub fn depart_walks(
     departed
 }
 
+/// Those that walk, and those that have to wait at hubs.
+pub fn admit_walks(walkers: &[u32], begun: &[Begun], scratch: &Scratch) -> [Vec<u32>; 2] {
+    let walks = |&s: &u32| {
+        let Begun { first, at_hub, .. } = begun[s as usize];
+        !at_hub || place::owner(scratch.owner[(first / 3) as usize]) == Some(s)
+    };
+    let (admitted, barred) = walkers.iter().partition(|s| walks(s));
+    [admitted, barred]
+}
+
 /// What walks led to.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Marked {
@@ -97,6 +167,8 @@ pub struct Marked {
     pub losers: Vec<u32>,
     /// Triangles crossed, of all walks together.
     pub walked: u64,
+    /// Whether any of the triangles had another owner, maybe one of this round.
+    pub stolen: bool,
     /// The lowest walker that could not go on.
     pub fault: Option<Fault>,
 }
@@ -106,13 +178,14 @@ pub fn mark_chains(
     mesh: &GhostMesh,
     positions: &[DVec2],
     sub_constraints: &[[u32; 2]],
-    walkers: &[[u32; 2]],
+    walkers: &[u32],
+    begun: &[Begun],
     scratch: &mut Scratch,
 ) -> Marked {
     let mut marked = Marked::default();
-    for &[s, first] in walkers {
+    for &s in walkers {
         let ends = sub_constraints[s as usize];
-        let reversed = mesh.apex(first) == ends[1];
+        let Begun { first, reversed, .. } = begun[s as usize];
         let line = if reversed { [ends[1], ends[0]] } else { ends }.map(|v| positions[v as usize]);
         let (mut h, mut near) = (first, 0);
         let mut fault = Some(Fault::Lost(s));
@@ -154,6 +227,13 @@ fn own(s: u32, h: u32, from: [i8; 3], reversed: bool, scratch: &mut Scratch, mar
         marked.triangles.push(t as u32);
     } else if !place::same_owner(old, word) {
         marked.losers.extend(if old < word { Some(s) } else { place::owner(old) });
+        if old > word {
+            marked.stolen = true;
+            if scratch.stamps[t] != scratch.round << 2 | LISTED {
+                scratch.stamps[t] = scratch.round << 2 | LISTED;
+                marked.triangles.push(t as u32);
+            }
+        }
     }
 }
 
@@ -206,13 +286,16 @@ pub fn flip_pairs(
     pairs: &mut [[u32; 2]],
     [spokes, degrees]: [&mut [u32]; 2],
 ) -> [u64; 4] {
+    let since = scratch.round;
     scratch.round += 1;
     let mut flips = [0; 4];
     let wins: Vec<bool> = pairs
         .iter()
-        .map(|&entry| {
+        .enumerate()
+        .map(|(i, &entry)| {
             let key = crate::reference::claim_key((entry[1] >> 30) as u8 + 1, entry[0] / 3);
-            claimed(mesh, entry).all(|t| scratch.claims[t as usize] == key)
+            let stays = |t: u32| i >= scratch.held || scratch.stamps[t as usize] >> 2 < since;
+            claimed(mesh, entry).all(|t| scratch.claims[t as usize] == key && stays(t))
         })
         .collect();
     for (entry, _) in pairs.iter_mut().zip(wins).filter(|(_, wins)| *wins) {
@@ -257,6 +340,7 @@ pub fn advance_pairs(
 ) -> Vec<[u32; 2]> {
     let mut looks = Vec::new();
     scratch.claims.fill(NONE);
+    scratch.held = 0;
     for &[entry, _] in pairs.iter().filter(|pair| pair[0] & WON != 0) {
         let h = entry & !WON;
         let g = prev(mesh.twin(next(h)));
