@@ -1,73 +1,15 @@
 //! What flips guarantee, checked by brute force.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod common;
+
+use common::*;
 use glam::DVec2;
 use polder_flip::FlipError;
 use polder_flip::reference::{self, Active};
-use polder_mesh::{Chains, GHOST, GhostMesh, Parts, Triangulation};
-use polder_predicates::{Sign, lexicographic, must_flip, orient2d};
+use polder_mesh::{GHOST, GhostMesh};
+use polder_predicates::{Sign, orient2d};
 use proptest::prelude::*;
-
-fn points(list: &[(i32, i32)]) -> Vec<DVec2> {
-    list.iter().map(|&(x, y)| DVec2::new(x.into(), y.into())).collect()
-}
-
-/// Numbers that look random: the same on every run.
-fn uniform(n: usize, seed: u32) -> Vec<DVec2> {
-    let coordinate = |i: usize| f64::from(polder_flip::priority(seed.wrapping_add(i as u32))) / f64::from(u32::MAX);
-    (0..n).map(|i| DVec2::new(coordinate(2 * i), coordinate(2 * i + 1))).collect()
-}
-
-fn canonical(mesh: &GhostMesh, positions: &[DVec2]) -> Triangulation {
-    let representatives: Vec<u32> = (0..positions.len() as u32).collect();
-    Triangulation::from_mesh(
-        mesh,
-        &representatives,
-        Parts { representatives: representatives.clone(), chains: Chains::default() },
-    )
-}
-
-/// Checks by the definitions, not by [`reference::is_illegal`]: topology, orientation, a convex hull of the right area,
-/// every vertex used, and no unconstrained edge that the tie-broken in-circle test rejects.
-fn check_delaunay(mesh: &GhostMesh, positions: &[DVec2]) -> Result<(), String> {
-    mesh.check().map_err(|e| e.to_string())?;
-    let at = |v: u32| positions[v as usize];
-    for t in mesh.finite() {
-        let [a, b, c] = mesh.triangles[t].map(at);
-        if orient2d(a, b, c) != Sign::Positive {
-            return Err(format!("triangle {t} is not counterclockwise"));
-        }
-        for k in 0..3 {
-            let h = 3 * t as u32 + k;
-            let g = mesh.twin(h);
-            if !mesh.is_finite((g / 3) as usize) || mesh.is_constrained(h) {
-                continue;
-            }
-            if must_flip(at(mesh.apex(h)), at(mesh.origin(h)), at(mesh.destination(h)), at(mesh.apex(g))) {
-                return Err(format!("half-edge {h} is illegal"));
-            }
-        }
-    }
-    for h in (0..3 * mesh.slots() as u32).filter(|&h| mesh.apex(h) == GHOST) {
-        // The hull runs against h, with everything on its left.
-        let (a, b) = (at(mesh.destination(h)), at(mesh.origin(h)));
-        if positions.iter().any(|&p| orient2d(a, b, p) == Sign::Negative) {
-            return Err(format!("a point lies outside the hull edge of half-edge {h}"));
-        }
-    }
-    let mut used = vec![false; positions.len()];
-    mesh.triangles.iter().flatten().filter(|&&v| v != GHOST).for_each(|&v| used[v as usize] = true);
-    match used.iter().position(|u| !u) {
-        Some(v) => Err(format!("vertex {v} is not used")),
-        None => Ok(()),
-    }
-}
-
-fn distinct(mut points: Vec<DVec2>) -> Vec<DVec2> {
-    points.sort_by(|a, b| lexicographic(*a, *b));
-    points.dedup();
-    points
-}
 
 /// Lawson's flips one at a time, in an order drawn from `seed`.
 fn flip_one_by_one(mesh: &mut GhostMesh, positions: &[DVec2], seed: u32) {
