@@ -29,11 +29,6 @@ uint64_t magnitude_of(int64_t x) {
     return uint64_t(x < 0l ? -x : x);
 }
 
-uint highest_bit(uint64_t x) {
-    uvec2 words = unpackUint2x32(x);
-    return uint(words.y != 0u ? 32 + findMSB(words.y) : findMSB(words.x));
-}
-
 // A number of two words as its exponent, counted from one below -base, and so many bits of its fraction; zero for zero.
 uint float_of(uint64_t high, uint64_t low, int base, uint fraction_bits) {
     if (high == 0ul && low == 0ul) {

@@ -1,11 +1,13 @@
 // Exact signs in integers: no f64 operation, right on every device for all finite coordinates, whatever their magnitudes.
 //
-// A coordinate is the bits of an f64, low word first. Two ways, tried in this order:
+// A coordinate is the bits of an f64, low word first. Three ways, tried in this order:
 //
 // 1. *Fixed point*. If all coordinates of a call are multiples of a unit and below 2^61 units, they become integers below
 //    2^61: differences below 2^62, liftings and minors below 2^125, the sum of three products of these below 2^252. All of
 //    it stays in registers.
-// 2. *Products of mantissas*. Otherwise the determinant is expanded in the coordinates themselves: orient2d into 6 products
+// 2. *Wide numbers*: mantissas of 64 bits with exponents that cannot run out, and an error bound. So points whose magnitudes
+//    have nothing in common cost no more than others, as long as they are not nearly on one line or circle.
+// 3. *Products of mantissas*. Otherwise the determinant is expanded in the coordinates themselves: orient2d into 6 products
 //    of two, incircle into 48 products of four, each an integer below 2^212 times a power of two. They are summed from the
 //    top, 256 bits at a time, until what is left cannot change the sign. So memory does not grow with the range of
 //    exponents, and numbers that have nothing in common cost no more than those that nearly cancel.
@@ -111,7 +113,111 @@ u64vec2 fixed_point(uvec4 point, int exponent, inout uint64_t lost) {
     return u64vec2(fixed_point(point.xy, exponent, lost), fixed_point(point.zw, exponent, lost));
 }
 
-// --- 2. Products of mantissas
+// --- 2. Wide numbers
+
+// `mantissa * 2^exponent`, up to a power of two that all have in common; the highest bit of a mantissa is set, if it is not zero.
+struct Wide {
+    uint64_t mantissa;
+    int exponent;
+    bool negative;
+};
+
+uint highest_bit(uint64_t x) {
+    uvec2 words = unpackUint2x32(x);
+    return uint(words.y != 0u ? 32 + findMSB(words.y) : findMSB(words.x));
+}
+
+// p - q, off by 2^-60 of it at most. Bits are cut off from one of them only, and only if its exponent is so much smaller that
+// the difference has 60 bits.
+Wide difference(uvec2 p, uvec2 q) {
+    int exponent = max(exponent_of(p), exponent_of(q));
+    int64_t x = int64_t((mantissa_of(p) << 9) >> min(exponent - exponent_of(p), 63));
+    int64_t y = int64_t((mantissa_of(q) << 9) >> min(exponent - exponent_of(q), 63));
+    int64_t value = ((p.y >> 31) != 0u ? -x : x) - ((q.y >> 31) != 0u ? -y : y);
+    uint64_t magnitude = uint64_t(value < 0l ? -value : value);
+    int shift = magnitude == 0ul ? 0 : 63 - int(highest_bit(magnitude));
+    return Wide(magnitude << shift, exponent - shift, value < 0l);
+}
+
+// The highest bits of the product.
+Wide multiply(Wide a, Wide b) {
+    return Wide(multiply(a.mantissa, b.mantissa).y, a.exponent + b.exponent, a.negative != b.negative);
+}
+
+// Adds a term to a sum in units of 2^(top + 5), below 2^59 of them.
+void add_term(Wide term, inout int64_t sum, inout int top) {
+    if (term.mantissa == 0ul) {
+        return;
+    }
+    if (term.exponent > top) {
+        sum >>= min(uint(term.exponent) - uint(top), 63u);
+        top = term.exponent;
+    }
+    int64_t value = int64_t(term.mantissa >> min(uint(top) - uint(term.exponent) + 5u, 63u));
+    sum += term.negative ? -value : value;
+}
+
+// What `wide_sign` does not know.
+const int UNCLEAR = 2;
+const int NOTHING = -0x7fffffff;
+
+// The sign of incircle, or with three points behind an unused one of orient2d, or UNCLEAR. As `polder_predicates::wide`, from
+// each point in turn as the base until one is clear: around it all bits are kept.
+//
+// A term is off by less than 2^-57 of it: 2^-60 by each of four differences, 2^-62 by each of two products, 2^-60 by the
+// product of these. That is less than 4 units of the sum, and it may lose two more units where it is added. So with 12 terms a
+// sum 72 units away from zero has the right sign. A difference is zero only if it is exactly zero, so without any term the
+// determinant is.
+int wide_sign(uvec4 points[4], bool incircle) {
+    [[dont_unroll]] for (uint base = 0u; base < 4u; base++) {
+        Wide x[3], y[3];
+        for (uint k = 0u; k < 3u; k++) {
+            x[k] = difference(points[k].xy, points[3].xy);
+            y[k] = difference(points[k].zw, points[3].zw);
+        }
+        int64_t sum = 0l;
+        int top = NOTHING;
+        [[dont_unroll]] for (uint k = 0u; k < (incircle ? 3u : 1u); k++) {
+            Wide left = multiply(x[1], y[2]);
+            Wide right = multiply(x[2], y[1]);
+            right.negative = !right.negative;
+            if (incircle) {
+                Wide lifting = multiply(x[0], x[0]);
+                add_term(multiply(left, lifting), sum, top);
+                add_term(multiply(right, lifting), sum, top);
+                lifting = multiply(y[0], y[0]);
+                add_term(multiply(left, lifting), sum, top);
+                add_term(multiply(right, lifting), sum, top);
+            } else {
+                add_term(left, sum, top);
+                add_term(right, sum, top);
+            }
+            Wide first = x[0];
+            x[0] = x[1];
+            x[1] = x[2];
+            x[2] = first;
+            first = y[0];
+            y[0] = y[1];
+            y[1] = y[2];
+            y[2] = first;
+        }
+        if (top == NOTHING) {
+            return 0;
+        }
+        if (sum >= 72l || sum <= -72l) {
+            // Each step around four points is an odd permutation.
+            return (sum < 0l) != (incircle && (base & 1u) != 0u) ? -1 : 1;
+        }
+        uvec4 first = points[incircle ? 0 : 1];
+        points[0] = points[1];
+        points[1] = points[2];
+        points[2] = points[3];
+        points[3] = first;
+    }
+    return UNCLEAR;
+}
+
+// --- 3. Products of mantissas
 
 // Bit i + 4 j + 16 k: whether the permutation (i, j, k, l) is odd.
 const uint64_t ODD_PERMUTATIONS = 0x214108241082840ul;
@@ -119,7 +225,6 @@ const uint64_t ODD_PERMUTATIONS = 0x214108241082840ul;
 const int PRODUCT_BITS = 212;
 // The bits that are summed at a time, in a u64vec4.
 const int WINDOW_BITS = 256;
-const int NOTHING = -0x7fffffff;
 
 // By less than 256 bits to the left or, if negative, to the right; what leaves the 256 bits is lost.
 u64vec4 shifted(u64vec4 a, int by) {
@@ -249,7 +354,8 @@ int exact_orient2d(uvec4 a, uvec4 b, uvec4 c) {
     u64vec2 p = fixed_point(a, exponent, lost) - origin_c;
     u64vec2 q = fixed_point(b, exponent, lost) - origin_c;
     if (lost != 0ul) {
-        return product_sum_sign(uvec4[](a, b, c, uvec4(0u)), false);
+        int sign = wide_sign(uvec4[](c, a, b, c), false);
+        return sign != UNCLEAR ? sign : product_sum_sign(uvec4[](a, b, c, uvec4(0u)), false);
     }
     u64vec2 value = cross_product(p, q);
     return sign_of(value.y, value.x);
@@ -263,7 +369,8 @@ int exact_incircle(uvec4 a, uvec4 b, uvec4 c, uvec4 d) {
     u64vec2 q = fixed_point(b, exponent, lost) - origin_d;
     u64vec2 r = fixed_point(c, exponent, lost) - origin_d;
     if (lost != 0ul) {
-        return product_sum_sign(uvec4[](a, b, c, d), true);
+        int sign = wide_sign(uvec4[](a, b, c, d), true);
+        return sign != UNCLEAR ? sign : product_sum_sign(uvec4[](a, b, c, d), true);
     }
     u64vec4 sum = u64vec4(0ul);
     // Not unrolled: a third of the code.

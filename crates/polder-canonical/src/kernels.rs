@@ -25,7 +25,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4e441ac0f9d787e0dfb62aaca389ca44c017b748ca896ab62df299c3e335c8e8";
+    source "fa79ae7146eae6f205cfe122c6d0132a2ab4f5dafb722a3ef605e1ba6abd6c18";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

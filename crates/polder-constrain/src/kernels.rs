@@ -41,7 +41,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "fa8cd1fa4ebbde6f58b5026423796ad5895c4d34cf01e664a967ea9e71bbb385";
+    source "9f8ae8e9bc2e5d8d4795c2fd98b4d4b61c291a346bbda9f0bee10e971f8e2ba1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -71,7 +71,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "3a98ea946ca78cfd29db7dcb750200bea8b5171b591c2dfe67869e77e8a213c1";
+    source "a81c5ab445780c806941482b2e4ab90dfd4d0f5182bc99284fb523040eb82fc7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -103,7 +103,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e56d2de87d757d6e9c7f791e088fd0aa6ab52f43529e0033620690000a885b31";
+    source "c3302ac6ecb6271ed08a78f79b8bf906cfc3a798c6bdd8c578fb854459eca05a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -139,7 +139,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "815235d493f8922cd71fb66e24777bd0b92cfe7e2d3a1275ad1e203810c0fd1d";
+    source "010537c12e8e2cfcf2bd986b64bcd0210449486682b24eb43764a14867a806ea";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -300,7 +300,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "f6518ff4da329744170ab8e76de1b8f4574da057d2bc8876e57cbecc22b7ae1d";
+    source "eca29459b804f5e04c47a762d5c12e430c966f6a79542a465bd2d12fbda3dc15";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -374,7 +374,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "d3d6a6830811f7d17fe0b1a27cec6e371820ced0a36cf33d69ac9d9b1671e67d";
+    source "0020ed2331bcbf476b67c8e05b8bc74c49bce4b0183f90d31cf685a099b23fee";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -429,7 +429,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "adf9ac1787fea1f6798ecb02dbf3add14bb686190a1e04e475d95bd87186a426";
+    source "fdbb13d38ae52bbbdb89b2a1b1d68758db44f0f5b5d5e542b2d9d27800786547";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -454,7 +454,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c5ee5b2a1b21e2783da3d3ba5cc04b331cdd16654a47c2d93b02719e75c9a7e1";
+    source "cc81cc05955f2a90fe32bd7251c9e5df58e733bfec6fcb703854fba95c019c26";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -507,7 +507,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "abb5bf4f07c5c8b1f88cc708a505e0a824f276e045c537931e06355cf88d0a80";
+    source "c0ca8f85644951f9c19da71985a044350f815583b37b9eaff70c7f22b5c45ea5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -96,7 +96,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "cb96ab903cc466d710385b4f16a1b1a620ed8b21a6f3fb4a6428015d669b1e78";
+    source "4c358cba134f815947303a031965408ec59f1bb9be3cc0d248612a8e3ca84c38";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -168,7 +168,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ee50425d2c910777d36524bc68b6d487cfdf8b4cd5da1813bc342972567cfb4a";
+    source "4247e5a07d948321b3548d4527763ef9142587804c34dc6c53c7185bee405ea7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -217,7 +217,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "aaf06e8dd66c7d9d25c7c9abc78d87358ebbad096c5b091c3b4e0037edfe1925";
+    source "c33a27a2ce12ca5a8fab00e8fe4fa186976d2da76502810a8cfb70bcf9d10332";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -253,7 +253,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "14129c4d3f98ba144b338aebd0408d87348f44c3f941002852b8fca6bb62cb4f";
+    source "fe92266bb565e4cb41f6068d8080ed3ef4a8649e592d1aea073bb26d28606a5f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -358,7 +358,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "7d44aae9b3c68b4ade4c244f2ec8fe0fc95f233620cdfa745266afdc047c0d4d";
+    source "f3053df72d071785254beac17b3ef6f557a615eb8948fd0446c4145b6b8f76d7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -385,7 +385,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "e54cb186bdf0517b14d2e6148d468435eb471aea33e90d0dbf845ae5d8da9bac";
+    source "3639a47dd8c105cd184677e2b34671a68164dd60ee713eacc4ceff4e03b8deed";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -487,7 +487,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1, "FEW"(2) = 1024];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "98b0fd0e7a7182c3a81c0babd45761e04682db26120ef314404e1c1af4001bb5";
+    source "42575670394651b24f464c3acdf2b94129e808081c47015cd77028addc5eeb81";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -614,6 +614,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "e44037bf1d29604d79a20392195aadee78b3894bb7b8347257ea592b59119ac7";
+    source "4d6c7daa8723b106306c10b4c7c2bf3641ae4cbc4a2a3092ff0584f5e7b82fec";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

@@ -27,7 +27,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "61c5a223008739c08ffad9b42d3ff80138e6d999e1cdd936e7a2574d736b2590";
+    source "ef2a92634d552dc381d056750f1ca3b82b49d8ef6a29415292c7a83cac5a9b5d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -86,7 +86,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "cf79612c73009ee5c0574245f04b3563c10f94528f6d6fd8f3aaf2eeb2b0a6a6";
+    source "28a7822785424c039edc4cc6fcd57924876b7ed946ff8c4143a0494005a177b6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -106,7 +106,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "479bb9e4451430e8cc2ab66d542159b223b535f4887f84bea7696d655e9d0557";
+    source "d085dbe1ca62b9b1ed44985ede1c3a71df904917054e61b421dd18e6857bf602";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -125,7 +125,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "031941c198ed505d8e807d4cc2823ac7c0fda9c51097a988d221802821360915";
+    source "ea2ead8f7f261dfb9b16542f960b75d27e60dbd9dcf3a2f324cf661e1f97b5cb";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -178,7 +178,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "c470ff884ff0dc5361d77a8446dcd3eba0bf14ec751f7730c9197886ae6c16b2";
+    source "ef62d64adb37f7475914ec8c15139ff442fdfac1aa4833c842963ee181e97be6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -206,6 +206,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "10e313f48c4d289992ab481fd3b4ae2b6b65469b5c32218ac0858bfdb4e28c8c";
+    source "4cf0c14801f83f1c4034ede157289867d5a17dac0b72640f4a2032ea68d1b8a7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
