@@ -7,7 +7,9 @@ mod facade_gpu_support;
 mod vulkan_support;
 
 use facade_gpu_support::{assert_on_device, assert_same, close, on_cpu, on_device, open, sets, stage};
-use polder::{Backend, CrossingPolicy, DVec2, Error, Gpu, MeshError, Options, Place, Pslg, triangulate, verify};
+use polder::{
+    Backend, CrossingPolicy, DVec2, Error, Gpu, MeshError, Options, Place, Pslg, Report, triangulate, verify,
+};
 use polder_flip::gpu::Arithmetic;
 use polder_io::generate;
 use polder_tests::constrained_families;
@@ -65,6 +67,31 @@ fn what_was_there_before_does_not_change_the_result() {
     let output = gpu.triangulate(&shuffled.pslg, &Options::default()).unwrap();
     let expected = triangulate(&with, &on_cpu()).unwrap().triangulation;
     assert_eq!(shuffled.digest_back(&output.triangulation), expected.digest());
+    close(gpu);
+}
+
+/// Not the result alone: what the stages count is told alike, points flipped first or not. Up to the constraints, whose
+/// pieces a device numbers in another way.
+#[test]
+fn the_references_take_the_same_way() {
+    let mut gpu = open(Arithmetic::Filtered);
+    let points = generate::uniform(300, 3);
+    let delaunay = triangulate(&points, &on_cpu()).unwrap().triangulation;
+    let edges: Vec<[u32; 2]> = delaunay.edges().map(|edge| edge.vertices.map(|v| v.0)).collect();
+    for constraints in [0, 40, 224, 225, 290] {
+        let pslg = Pslg::new(points.points().to_vec(), edges[..constraints].to_vec()).unwrap();
+        let found = gpu.triangulate(&pslg, &Options::default()).unwrap().report;
+        let expected = triangulate(&pslg, &Options::with_backend(Backend::Reference)).unwrap().report;
+        let names = |report: &Report| -> Vec<&str> { report.stages.iter().map(|stage| stage.name).collect() };
+        let mut alike = vec!["voronoi", "shift", "insert"];
+        alike.push(if constraints == 0 { "flip" } else { "flip_points" });
+        for report in [&found, &expected] {
+            assert_eq!(names(report).contains(&"flip_points"), constraints >= 225);
+        }
+        for name in alike.into_iter().filter(|name| names(&expected).contains(name)) {
+            assert_eq!(stage(&found, name).counts, stage(&expected, name).counts, "{constraints} constraints, {name}");
+        }
+    }
     close(gpu);
 }
 

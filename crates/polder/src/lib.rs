@@ -37,6 +37,7 @@ mod cpu;
 mod error;
 mod gpu;
 mod options;
+mod plan;
 mod reference;
 pub mod regions;
 mod report;

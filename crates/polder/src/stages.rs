@@ -1,5 +1,6 @@
 //! The stages' references in order, with everything that they pass on to each other.
 
+use crate::plan::flips_first;
 use crate::report::Stopwatch;
 use crate::{Error, Options};
 use polder_constrain::{Crossings, InsertReport, Walk};
@@ -22,6 +23,9 @@ pub struct Stages {
     pub shifted: Shifted,
     /// Stage 4: the triangulation of all distinct points.
     pub inserted: Inserted,
+    /// Where there are at least three constraints to four points: that triangulation, flipped to the Delaunay one before
+    /// they walk it.
+    pub flipped_first: Option<(GhostMesh, FlipReport)>,
     /// Stage 6, first step: the constraints cut at vertices, and the vertices along each.
     pub walk: Walk,
     /// Stage 6: the triangulation with every constraint in it.
@@ -49,7 +53,7 @@ pub fn stages(pslg: &Pslg, options: &Options) -> Result<Option<Stages>, Error> {
     run(pslg, options, &mut Stopwatch::start())
 }
 
-const STAGES: u64 = 7;
+const STAGES: u64 = 8;
 
 pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Result<Option<Stages>, Error> {
     use polder_constrain::reference as constrain;
@@ -111,17 +115,29 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
         ],
     );
 
-    monitor.step("constrain", 4, STAGES)?;
+    let flipped_first = match flips_first(pslg.points().len(), pslg.constraints().len()) {
+        true => {
+            monitor.step("flip_points", 4, STAGES)?;
+            let mut mesh = inserted.mesh.clone();
+            let flips = polder_flip::reference::flip(&mut mesh, &positions)?;
+            watch.stage("flip_points", flip_counts(&flips));
+            Some((mesh, flips))
+        }
+        false => None,
+    };
+
+    monitor.step("constrain", 5, STAGES)?;
+    let start = flipped_first.as_ref().map_or(&inserted.mesh, |(mesh, _)| mesh);
     let ends = vertices_of(pslg, &voronoi.sites.order, &inserted.vertex_of);
-    let walk = constrain::walk(&inserted.mesh, &positions, &ends)?;
-    let crossings = constrain::crossings(&inserted.mesh, &positions, &walk, options.max_crossings)?;
+    let walk = constrain::walk(start, &positions, &ends)?;
+    let crossings = constrain::crossings(start, &positions, &walk, options.max_crossings)?;
     if !crossings.pairs.is_empty() || crossings.truncated {
         return Err(crossing(crossings));
     }
-    let mut constrained = inserted.mesh.clone();
+    let mut constrained = start.clone();
     let mut inserting = constrain::Insertion::new(&mut constrained, &positions, &walk.sub_constraints)?;
     while !inserting.is_done() {
-        monitor.step("constrain", 4, STAGES)?;
+        monitor.step("constrain", 5, STAGES)?;
         inserting.outer_round()?;
     }
     let insertion = inserting.report();
@@ -136,12 +152,12 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
         ],
     );
 
-    monitor.step("flip", 5, STAGES)?;
+    monitor.step("flip", 6, STAGES)?;
     let mut flipped = constrained.clone();
     let flips = polder_flip::reference::flip(&mut flipped, &positions)?;
-    watch.stage("flip", [("rounds", flips.rounds), ("flips", flips.flips), ("tests", flips.tests)]);
+    watch.stage("flip", flip_counts(&flips));
 
-    monitor.step("canonical_order", 6, STAGES)?;
+    monitor.step("canonical_order", 7, STAGES)?;
     let names = inserted.names(&voronoi.sites.order);
     let representatives = inserted.representatives(&voronoi.sites.order, &names);
     let mut chains: Chains = walk.chains.clone();
@@ -153,6 +169,7 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
         dualized,
         shifted,
         inserted,
+        flipped_first,
         walk,
         constrained,
         insertion,
@@ -162,6 +179,10 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
         positions,
         triangulation,
     }))
+}
+
+fn flip_counts(flips: &FlipReport) -> [(&'static str, u64); 3] {
+    [("rounds", flips.rounds), ("flips", flips.flips), ("tests", flips.tests)]
 }
 
 /// The constraints' ends as vertices of the mesh.

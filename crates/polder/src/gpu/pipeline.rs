@@ -5,6 +5,7 @@ use super::held::{Held, Reads};
 use super::internal;
 use super::work::Input;
 use crate::Error;
+use crate::plan::flips_first;
 use polder_canonical::gpu as canonical;
 use polder_constrain::gpu::pieces::Grid;
 use polder_constrain::gpu::walk;
@@ -105,8 +106,7 @@ impl Pipeline {
         };
         let insert = self.insert.record(recording, mesh, (&self.flip, &held.flip), &held.insert, input)?;
 
-        // Where there are about as many constraints as points most are short, and edges of the Delaunay triangulation.
-        let flip_points = flips_first(given).then_some(&held.flips_first);
+        let flip_points = flips_first(given.points.len(), given.constraint_count()).then_some(&held.flips_first);
         if let Some(tally) = flip_points {
             recording.section("flip_points");
             tally.record_clear(recording);
@@ -136,13 +136,4 @@ impl Pipeline {
         let canonical = self.canonical.record(recording, &input, &held.canonical)?;
         Ok(Reads { voronoi, dualize, shift, hull, insert, flip_points, constraints, flip, canonical })
     }
-}
-
-/// Whether points are flipped to their Delaunay triangulation before constraints go in, and not only after.
-///
-/// Measured on an NVIDIA H200: of 10.8 million pieces of coastlines among 10.7 million points 79% are edges before the flips and
-/// 98.7% after, and all took 61.5 ms so, 70.0 with flips at the end alone. A million constraints of all lengths among ten million
-/// points took 56.2 ms so, 54.4 with flips at the end alone.
-fn flips_first(given: &Input<'_>) -> bool {
-    4 * given.constraint_count() >= 3 * given.points.len()
 }
