@@ -1,4 +1,5 @@
 use polder_flip::FlipError;
+use polder_mesh::Cancelled;
 use polder_voronoi::VoronoiError;
 use thiserror::Error;
 
@@ -86,4 +87,7 @@ pub enum DualizeError {
     /// Stage 1 failed.
     #[error(transparent)]
     Voronoi(#[from] VoronoiError),
+    /// The caller wants no more rounds.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }

@@ -1,3 +1,4 @@
+use polder_mesh::Cancelled;
 use thiserror::Error;
 
 /// Why a mesh could not be flipped to the end.
@@ -24,4 +25,7 @@ pub enum FlipError {
         /// How many triangles the mesh has, ghosts included.
         triangles: usize,
     },
+    /// The caller wants no more rounds.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }

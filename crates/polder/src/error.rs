@@ -140,6 +140,7 @@ impl From<DualizeError> for Error {
         match error {
             DualizeError::Voronoi(error) => error.into(),
             DualizeError::Flip(error) => error.into(),
+            DualizeError::Cancelled(cancelled) => cancelled.into(),
             DualizeError::BoundExceeded { stage, bound } => Self::BoundExceeded { stage, bound },
             DualizeError::WalkLost { steps, .. } => Self::BoundExceeded { stage: "insert", bound: steps },
             other => Self::Internal { stage: "dualize", what: other.to_string() },
@@ -173,6 +174,7 @@ impl From<CanonicalError> for Error {
 impl From<FlipError> for Error {
     fn from(error: FlipError) -> Self {
         match error {
+            FlipError::Cancelled(cancelled) => cancelled.into(),
             FlipError::BoundExceeded { stage, rounds, .. } => Self::BoundExceeded { stage, bound: rounds },
             other => Self::Internal { stage: "flip", what: other.to_string() },
         }

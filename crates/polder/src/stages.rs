@@ -6,6 +6,7 @@ use crate::{Error, Options};
 use polder_constrain::{Crossings, InsertReport, Walk};
 use polder_dualize::{Dualized, Inserted, Shifted};
 use polder_flip::FlipReport;
+use polder_flip::reference::flip_with;
 use polder_mesh::{Chains, DVec2, GhostMesh, Parts, Pslg, Triangulation};
 use polder_voronoi::Resolution;
 
@@ -90,7 +91,8 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
     watch.stage("dualize", [("necks", dualized.necks)]);
 
     monitor.step("shift", 2, STAGES)?;
-    let shifted = dualize::shift(dualized.mesh.clone(), &centers, &positions)?;
+    let shifted =
+        dualize::shift_with(dualized.mesh.clone(), &centers, &positions, &mut || monitor.step("shift", 2, STAGES))?;
     watch.stage(
         "shift",
         [
@@ -103,7 +105,8 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
 
     monitor.step("insert", 3, STAGES)?;
     let new = dualize::points_to_insert(&voronoi.diagram, sites, &shifted);
-    let inserted = dualize::insert(shifted.mesh.clone(), &positions, &new)?;
+    let inserted =
+        dualize::insert_with(shifted.mesh.clone(), &positions, &new, &mut || monitor.step("insert", 3, STAGES))?;
     watch.stage(
         "insert",
         [
@@ -119,7 +122,7 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
         true => {
             monitor.step("flip_points", 4, STAGES)?;
             let mut mesh = inserted.mesh.clone();
-            let flips = polder_flip::reference::flip(&mut mesh, &positions)?;
+            let flips = flip_with(&mut mesh, &positions, &mut || monitor.step("flip_points", 4, STAGES))?;
             watch.stage("flip_points", flip_counts(&flips));
             Some((mesh, flips))
         }
@@ -154,7 +157,7 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
 
     monitor.step("flip", 6, STAGES)?;
     let mut flipped = constrained.clone();
-    let flips = polder_flip::reference::flip(&mut flipped, &positions)?;
+    let flips = flip_with(&mut flipped, &positions, &mut || monitor.step("flip", 6, STAGES))?;
     watch.stage("flip", flip_counts(&flips));
 
     monitor.step("canonical_order", 7, STAGES)?;

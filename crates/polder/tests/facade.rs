@@ -94,6 +94,36 @@ fn a_cancelled_call_says_so() {
     }
 }
 
+/// Stages of many rounds stop between two of them.
+#[test]
+fn references_stop_between_rounds() {
+    let sparse = generate::segments(3000, 300, 1);
+    let delaunay = triangulate(&sparse, &Options::default()).unwrap().triangulation;
+    let edges = delaunay.edges().map(|edge| edge.vertices.map(|v| v.0)).take(2500).collect();
+    let outlines = Pslg::new(sparse.points().to_vec(), edges).unwrap();
+    for stage in ["shift", "insert", "flip_points", "constrain", "flip"] {
+        let input = if stage == "flip_points" { &outlines } else { &sparse };
+        for rounds in [2, 3] {
+            let cancel = Arc::new(AtomicBool::new(false));
+            let (flag, steps, last) = (cancel.clone(), AtomicU64::new(0), Arc::new(Mutex::new("")));
+            let told = last.clone();
+            let progress = move |p: polder::Progress| {
+                *told.lock().unwrap() = p.stage;
+                if p.stage == stage && steps.fetch_add(1, Ordering::Relaxed) + 1 == rounds {
+                    flag.store(true, Ordering::Relaxed);
+                }
+            };
+            let options = Options {
+                cancel: Some(cancel),
+                progress: Some(Arc::new(progress)),
+                ..Options::with_backend(Backend::Reference)
+            };
+            assert_eq!(triangulate(input, &options).unwrap_err().kind(), "cancelled", "{stage}");
+            assert_eq!(*last.lock().unwrap(), stage);
+        }
+    }
+}
+
 #[test]
 fn progress_names_the_stages() {
     let input = generate::segments(30_000, 3_000, 1);

@@ -36,7 +36,7 @@ use crate::{DualizeError, Inserted};
 use glam::DVec2;
 use polder_flip::FlipReport;
 use polder_flip::reference::{Active, flip_round, round_bound};
-use polder_mesh::{DELETED, GHOST, GhostMesh, NONE};
+use polder_mesh::{Cancelled, DELETED, GHOST, GhostMesh, NONE};
 
 const STAGE: &str = "insert";
 
@@ -83,7 +83,21 @@ impl ToInsert {
 ///
 /// [`DualizeError::Mismatch`] if the parts of `new` differ in length, name a point without a position, or slots that
 /// are not free. Every other error means that the mesh was not a triangulation as above.
-pub fn insert(mut mesh: GhostMesh, positions: &[DVec2], new: &ToInsert) -> Result<Inserted, DualizeError> {
+pub fn insert(mesh: GhostMesh, positions: &[DVec2], new: &ToInsert) -> Result<Inserted, DualizeError> {
+    insert_with(mesh, positions, new, &mut || Ok(()))
+}
+
+/// The same, asking before each round whether to go on.
+///
+/// # Errors
+///
+/// As [`insert`], and [`DualizeError::Cancelled`].
+pub fn insert_with(
+    mut mesh: GhostMesh,
+    positions: &[DVec2],
+    new: &ToInsert,
+    go_on: &mut dyn FnMut() -> Result<(), Cancelled>,
+) -> Result<Inserted, DualizeError> {
     let mut slots = check(&mesh, positions, new)?;
     let mut out = Inserted { vertex_of: (0..positions.len() as u32).collect(), ..Inserted::default() };
     if positions.is_empty() {
@@ -114,6 +128,7 @@ pub fn insert(mut mesh: GhostMesh, positions: &[DVec2], new: &ToInsert) -> Resul
     let mut round = Round { claims, rounds, active: Active::new(), positions, slots: &slots, center };
     let bound = waiting.len() as u64;
     while !waiting.is_empty() {
+        go_on()?;
         if out.rounds == bound {
             return Err(DualizeError::BoundExceeded { stage: STAGE, bound });
         }

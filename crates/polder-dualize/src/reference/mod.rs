@@ -21,6 +21,6 @@ mod whole;
 
 pub use certify::certify;
 pub use dualize::{dual, dualize};
-pub use insert::{ToInsert, insert};
-pub use shift::shift;
+pub use insert::{ToInsert, insert, insert_with};
+pub use shift::{shift, shift_with};
 pub use whole::{Phases, points_to_insert, triangulate};

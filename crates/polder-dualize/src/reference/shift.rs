@@ -54,7 +54,7 @@ use crate::{DualizeError, Shifted};
 use glam::DVec2;
 use polder_flip::priority;
 use polder_flip::reference::close_hull;
-use polder_mesh::{GHOST, GhostMesh, NONE};
+use polder_mesh::{Cancelled, GHOST, GhostMesh, NONE};
 use polder_predicates::{Sign, orient2d};
 
 /// Moves the sites of a dualized mesh from `centers` to `positions` and takes out those that cannot move.
@@ -68,6 +68,20 @@ use polder_predicates::{Sign, orient2d};
 /// [`DualizeError::Mismatch`] if there are fewer positions than centers or a corner of the mesh has none. Every other
 /// error means that the mesh was not a triangulation of the centers, or the order above was not kept.
 pub fn shift(mesh: GhostMesh, centers: &[DVec2], positions: &[DVec2]) -> Result<Shifted, DualizeError> {
+    shift_with(mesh, centers, positions, &mut || Ok(()))
+}
+
+/// The same, asking before each step, and before each round of taking out, whether to go on.
+///
+/// # Errors
+///
+/// As [`shift`], and [`DualizeError::Cancelled`].
+pub fn shift_with(
+    mesh: GhostMesh,
+    centers: &[DVec2],
+    positions: &[DVec2],
+    go_on: &mut dyn FnMut() -> Result<(), Cancelled>,
+) -> Result<Shifted, DualizeError> {
     let sites = centers.len();
     if positions.len() < sites {
         return Err(DualizeError::Mismatch { what: "a site without a position", index: positions.len() });
@@ -81,11 +95,13 @@ pub fn shift(mesh: GhostMesh, centers: &[DVec2], positions: &[DVec2]) -> Result<
     let mut pinned = vec![false; sites];
     let pin_rounds = pin(&mesh, centers, &mut at, &mut pinned)?;
     let bad = pinned.iter().filter(|&&p| p).count();
+    go_on()?;
     let unpin_rounds = unpin(&mesh, centers, positions, &mut at, &mut pinned)?;
     let stuck = pinned.iter().filter(|&&p| p).count();
+    go_on()?;
     let hull = close_hull(&mut mesh, &at)?;
     certify(&mesh, &at, "shift")?;
-    let taken = take_out(&mut mesh, &at, pinned)?;
+    let taken = take_out(&mut mesh, &at, pinned, go_on)?;
     certify(&mesh, &positions[..sites], "take out")?;
     let rounds = [pin_rounds, unpin_rounds, taken.rounds];
     Ok(Shifted { mesh, heirs: taken.heirs, freed: taken.freed, bad, stuck, rounds, hull })

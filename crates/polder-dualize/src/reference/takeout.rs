@@ -70,7 +70,7 @@ use super::star::{broken, star};
 use crate::DualizeError;
 use glam::DVec2;
 use polder_flip::priority;
-use polder_mesh::{GHOST, GhostMesh, NONE, next, prev};
+use polder_mesh::{Cancelled, GHOST, GhostMesh, NONE, next, prev};
 use polder_predicates::{Sign, orient2d};
 
 const STAGE: &str = "take out";
@@ -90,7 +90,12 @@ pub(super) struct Taken {
 /// Takes the pinned vertices out.
 ///
 /// The mesh must be a triangulation of the positions `at` with a convex hull, or a chain, or empty.
-pub(super) fn take_out(mesh: &mut GhostMesh, at: &[DVec2], mut pinned: Vec<bool>) -> Result<Taken, DualizeError> {
+pub(super) fn take_out(
+    mesh: &mut GhostMesh,
+    at: &[DVec2],
+    mut pinned: Vec<bool>,
+    go_on: &mut dyn FnMut() -> Result<(), Cancelled>,
+) -> Result<Taken, DualizeError> {
     let mut heirs: Vec<u32> = (0..at.len() as u32).collect();
     let mut freed = vec![[NONE; 2]; at.len()];
     let mut gone = Vec::new();
@@ -102,6 +107,7 @@ pub(super) fn take_out(mesh: &mut GhostMesh, at: &[DVec2], mut pinned: Vec<bool>
         return Ok(Taken { heirs, freed, rounds });
     }
     while left > 0 {
+        go_on()?;
         if rounds == bound {
             return Err(DualizeError::BoundExceeded { stage: STAGE, bound });
         }

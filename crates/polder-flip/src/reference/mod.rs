@@ -31,7 +31,7 @@ pub use start::{chain, sweep};
 use crate::{FlipError, FlipReport, priority};
 use active::Scope;
 use glam::DVec2;
-use polder_mesh::{DELETED, GHOST, GhostMesh, NONE, next, prev};
+use polder_mesh::{Cancelled, DELETED, GHOST, GhostMesh, NONE, next, prev};
 use polder_predicates::{Sign, must_flip, orient2d};
 
 /// Whether the edge of half-edge `h` must be flipped.
@@ -145,8 +145,21 @@ pub fn flip_round(mesh: &mut GhostMesh, positions: &[DVec2], active: &mut Active
 /// [`FlipError::MissingPosition`] if a corner has no position. [`FlipError::BoundExceeded`] after [`round_bound`]
 /// rounds; a mesh whose finite triangles are counterclockwise and do not overlap is not known to come near it.
 pub fn flip(mesh: &mut GhostMesh, positions: &[DVec2]) -> Result<FlipReport, FlipError> {
+    flip_with(mesh, positions, &mut || Ok(()))
+}
+
+/// The same, asking before each round whether to go on.
+///
+/// # Errors
+///
+/// As [`flip`], and [`FlipError::Cancelled`]; the mesh is then a triangulation as before, flipped in part.
+pub fn flip_with(
+    mesh: &mut GhostMesh,
+    positions: &[DVec2],
+    go_on: &mut dyn FnMut() -> Result<(), Cancelled>,
+) -> Result<FlipReport, FlipError> {
     check_positions(mesh, positions)?;
-    run(mesh, positions, Active::all(mesh), "flip")
+    run(mesh, positions, Active::all(mesh), "flip", go_on)
 }
 
 /// Ghost flips alone, until the hull is nowhere strictly reflex.
@@ -160,7 +173,7 @@ pub fn flip(mesh: &mut GhostMesh, positions: &[DVec2]) -> Result<FlipReport, Fli
 /// As [`flip`].
 pub fn close_hull(mesh: &mut GhostMesh, positions: &[DVec2]) -> Result<FlipReport, FlipError> {
     check_positions(mesh, positions)?;
-    run(mesh, positions, Active::hull(mesh), "close hull")
+    run(mesh, positions, Active::hull(mesh), "close hull", &mut || Ok(()))
 }
 
 /// The number of rounds after which [`flip`] gives up, for a mesh of so many triangles.
@@ -177,10 +190,12 @@ fn run(
     positions: &[DVec2],
     mut active: Active,
     stage: &'static str,
+    go_on: &mut dyn FnMut() -> Result<(), Cancelled>,
 ) -> Result<FlipReport, FlipError> {
     let mut report = FlipReport::default();
     let bound = round_bound(mesh.slots());
     while !active.is_empty() {
+        go_on()?;
         if report.rounds == bound {
             return Err(FlipError::BoundExceeded { stage, rounds: bound, triangles: mesh.slots() });
         }

@@ -12,7 +12,7 @@ fn check(mesh: GhostMesh, at: &[DVec2], pinned: &[u32]) -> (GhostMesh, Vec<u32>,
     let mut flags = vec![false; at.len()];
     pinned.iter().for_each(|&v| flags[v as usize] = true);
     let slots = mesh.slots();
-    let taken = take_out(&mut mesh, at, flags).unwrap();
+    let taken = take_out(&mut mesh, at, flags, &mut || Ok(())).unwrap();
     mesh.check().unwrap();
     certify(&mesh, at, "test").unwrap();
     let mut free: Vec<u32> = taken.freed.iter().flatten().copied().filter(|&t| t != NONE).collect();
