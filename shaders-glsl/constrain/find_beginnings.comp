@@ -1,4 +1,4 @@
-// Long walks in pieces, 2 of 2: where each later piece begins. Near the point that divides the walker a vertex to the left of
+// Long walks in pieces, 3 of 3: where each later piece begins. Near the point that divides the walker a vertex to the left of
 // it is looked for, and one to the right, and the mesh is walked from the one to the other. On the way is an edge that the
 // walker crosses for certain: its ends lie on different sides of the walker, and the walker's on different sides of it. Or a
 // vertex turns up that lies on the walker.
@@ -136,9 +136,6 @@ void main() {
     uint count = min(piece_count.at[0], piece_limit);
     for (uint p = item_index(); p < count; p += item_stride()) {
         uvec4 piece = pieces.at[p];
-        if (piece.w == 0u) {
-            continue;
-        }
         uvec2 both = ends.at[piece.x];
         bool reversed = present(firsts) ? (firsts.at[piece.x] & AT_VERTEX) != 0u : degrees.at[both.y] < degrees.at[both.x];
         Point a = point_at(positions, reversed ? both.y : both.x);

@@ -114,35 +114,46 @@ fn sow_seeds() {
     }
 }
 
+/// The number that all should have; and each has its share of the room.
+#[test]
+fn count_pieces() {
+    let mut gpu = Gpu::open();
+    let stage = Stage::new(&gpu.device, Arithmetic::Integers).unwrap();
+    for (name, case) in cases() {
+        let on = On::new(&mut gpu, &case, 4);
+        on.run(&mut gpu, &stage, case.grid);
+        let [_, _, low, high] = gpu.fetch(on.buffers.count())[..] else { panic!() };
+        let wanted = expected::count_pieces(&case.start.positions, &case.ends, &case.list, &case.grid);
+        assert_eq!(u64::from(low) | u64::from(high) << 32, wanted, "{name}");
+    }
+}
+
 #[test]
 fn plan_pieces() {
     let mut gpu = Gpu::open();
     let stage = Stage::new(&gpu.device, Arithmetic::Integers).unwrap();
-    let mut all = 0;
+    let [mut all, mut fewer] = [0, 0];
     for (name, case) in cases() {
-        let wanted = expected::plan_pieces(&case.start.positions, &case.ends, &case.list, &case.grid);
-        let count = wanted.iter().map(|n| n - 1).sum::<u32>() as usize;
-        all += count;
-        let (_, runs, pieces) = On::new(&mut gpu, &case, count).run(&mut gpu, &stage, case.grid);
-        assert_eq!(pieces.len(), count, "{name}");
-        for (&walker, &pieces_of) in case.list.iter().zip(&wanted) {
-            let run = runs[walker as usize];
-            assert_eq!(run == NONE, pieces_of == 1, "{name}: walker {walker}");
-            for number in 1..pieces_of {
-                let [of, which, _, last] = pieces[(run + number - 1) as usize];
-                assert_eq!([of, which, last], [walker, number << 16 | pieces_of, NONE], "{name}");
+        let plan = |room| expected::plan_pieces(&case.start.positions, &case.ends, &case.list, &case.grid, room);
+        let count: u32 = plan(usize::MAX).iter().map(|n| n - 1).sum();
+        for room in [count + 1, count, count / 2, count / 9, 1].map(|room| room.max(1) as usize) {
+            let wanted = plan(room);
+            let later = wanted.iter().map(|n| n - 1).sum::<u32>() as usize;
+            assert!(later <= room, "{name}");
+            let (_, runs, pieces) = On::new(&mut gpu, &case, room).run(&mut gpu, &stage, case.grid);
+            assert_eq!(pieces.len(), later, "{name}");
+            for (&walker, &pieces_of) in case.list.iter().zip(&wanted) {
+                let run = runs[walker as usize];
+                assert_eq!(run == NONE, pieces_of == 1, "{name}: walker {walker}");
+                for number in 1..pieces_of {
+                    let [of, which, _, last] = pieces[(run + number - 1) as usize];
+                    assert_eq!([of, which, last], [walker, number << 16 | pieces_of, NONE], "{name}");
+                }
             }
+            if room > count as usize { all += later } else { fewer += later }
         }
-        // Less room: each walker has all its pieces or none, and what is left in the list does nothing.
-        let room = count / 2;
-        let (_, runs, pieces) = On::new(&mut gpu, &case, room).run(&mut gpu, &stage, case.grid);
-        let idle = pieces.iter().take(room).filter(|piece| piece[3] != NONE);
-        assert!(idle.clone().all(|&[_, which, beginning, last]| [which, beginning, last] == [1 << 16 | 2, NONE, 0]));
-        let kept: u32 =
-            case.list.iter().zip(&wanted).filter(|(w, _)| runs[**w as usize] != NONE).map(|(_, n)| n - 1).sum();
-        assert_eq!(kept as usize + idle.count(), room.min(pieces.len()), "{name}");
     }
-    assert!(all > 10_000, "{all} pieces");
+    assert!(all > 10_000 && fewer > 1000, "{all} and {fewer} pieces");
 }
 
 #[test]
@@ -151,8 +162,8 @@ fn find_beginnings() {
     let stages = [Arithmetic::Filtered, Arithmetic::Integers].map(|a| Stage::new(&gpu.device, a).unwrap());
     let [mut found, mut all] = [0, 0];
     for (turn, (name, case)) in cases().enumerate() {
-        let room: u32 = expected::plan_pieces(&case.start.positions, &case.ends, &case.list, &case.grid).iter().sum();
-        let (seeds, _, pieces) = On::new(&mut gpu, &case, room as usize).run(&mut gpu, &stages[turn % 2], case.grid);
+        let room = expected::count_pieces(&case.start.positions, &case.ends, &case.list, &case.grid) as usize + 1;
+        let (seeds, _, pieces) = On::new(&mut gpu, &case, room).run(&mut gpu, &stages[turn % 2], case.grid);
         let of_these = [pieces.iter().filter(|piece| piece[2] != NONE).count(), pieces.len()];
         // Where points lie everywhere, nearly every piece has a beginning.
         let uniform = name == "uniform";

@@ -76,6 +76,32 @@ define_kernel! {
 }
 
 define_kernel! {
+    /// Long walks in pieces, 1 of 3: how many later pieces all listed walkers should have.
+    CountPieces(CountPiecesArgs) = "count_pieces";
+    buffers {
+        0: read positions: View<'a, [u32; 4]>,
+        8: read ends: View<'a, [u32; 2]>,
+        16: read list: View<'a, u32>,
+        24: read listed: View<'a, u32>,
+        32: maybe_read barred: Option<View<'a, u32>>,
+        40: both piece_count: View<'a, u32>,
+    }
+    values {
+        48: low_x: i64,
+        56: low_y: i64,
+        64: exponent: i32,
+        68: limit: u32,
+        72: piece_length: u32,
+    }
+    argument_bytes 76;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256];
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "7455b2fe70fcd8d479fe372b18ad712e629dbc5f205a18faf3f2b86978391f77";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
     /// Step 1 of an outer round: each sub-constraint that is to walk leaves the star of one of its ends: of a hub, or else of the end
     /// with fewer edges. In the first round it turns out which vertices are hubs. Who leaves a hub claims the triangle there. What
     /// has become an edge becomes a constrained one.
@@ -108,7 +134,7 @@ define_kernel! {
 }
 
 define_kernel! {
-    /// Long walks in pieces, 2 of 2: where each later piece begins. Near the point that divides the walker a vertex to the left of
+    /// Long walks in pieces, 3 of 3: where each later piece begins. Near the point that divides the walker a vertex to the left of
     /// it is looked for, and one to the right, and the mesh is walked from the one to the other. On the way is an edge that the
     /// walker crosses for certain: its ends lie on different sides of the walker, and the walker's on different sides of it. Or a
     /// vertex turns up that lies on the walker.
@@ -139,7 +165,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "010537c12e8e2cfcf2bd986b64bcd0210449486682b24eb43764a14867a806ea";
+    source "dc6c194d3ab2fc2c3af5f5210dd0c88f0f8e6d3e099219b2c5696c56a36314e6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -405,7 +431,8 @@ define_kernel! {
 }
 
 define_kernel! {
-    /// Long walks in pieces, 1 of 2: how many pieces each listed walker has, and where its later ones stand.
+    /// Long walks in pieces, 2 of 3: how many pieces each listed walker has, and where its later ones stand. If there is no room for
+    /// as many as are wanted all have fewer.
     PlanPieces(PlanPiecesArgs) = "plan_pieces";
     buffers {
         0: read positions: View<'a, [u32; 4]>,
@@ -429,7 +456,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "fdbb13d38ae52bbbdb89b2a1b1d68758db44f0f5b5d5e542b2d9d27800786547";
+    source "8636dbccc83ca26a3fbc4b48eb7eddf16d7a72c9174185b43fbbe1a3c453cee8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -2,7 +2,8 @@
 //!
 //! 1. *Seeds.* A coarse grid over the vertices, a few of them to a cell, has up to two vertices of each cell.
 //! 2. *Plan.* A *walker* (what is to walk: a pair of vertices) has one piece for about [`TRIANGLES`] triangles that it can
-//!    be expected to cross. The later ones of all walkers stand in a list, those of one walker together.
+//!    be expected to cross, or for several times as many if there is no room for all these pieces. The later ones of all walkers
+//!    stand in a list, those of one walker together.
 //! 3. *Beginnings.* Where a piece is to begin, a vertex to the left of the walker and one to the right are taken from cells
 //!    nearby. A walk from the one to the other comes over an edge that the walker crosses; exact signs say that it does.
 //!    It must not lie far off along the walker, else pieces begin out of order. A vertex on the walker serves as well. Where nothing is found the piece has no beginning, and the one before goes on.
@@ -120,7 +121,7 @@ impl Grid {
         both.filter(|&v| v != NONE).collect()
     }
 
-    /// How many pieces a walker has.
+    /// How many pieces a walker has, if there is room for all.
     pub fn pieces(&self, [a, b]: [DVec2; 2]) -> u32 {
         let places = [a, b].map(|p| p.to_array().map(|x| floor_units(x, self.exponent)));
         let [x, y] = [0, 1].map(|k| places[0][k].abs_diff(places[1][k]));
@@ -164,7 +165,7 @@ impl Buffers {
             .buffer::<u32>("piece count", 4)
     }
 
-    /// Memory for grids over so many vertices, and so many pieces. Walkers for whose pieces there is no room walk in one.
+    /// Memory for grids over so many vertices, and so many pieces.
     ///
     /// # Errors
     ///
@@ -193,7 +194,7 @@ impl Buffers {
         self.pieces.view()
     }
 
-    /// How many there are, in the first word; more than there is room for if some did not fit.
+    /// How many there are, in the first word; and how many were wanted, in the third and fourth.
     pub fn count(&self) -> View<'_, u32> {
         self.count.view()
     }
@@ -231,6 +232,7 @@ pub struct Begun<'a> {
 #[derive(Debug)]
 pub struct Stage {
     sow: Kernel<SowSeeds>,
+    count: Kernel<CountPieces>,
     plan: Kernel<PlanPieces>,
     find: Kernel<FindBeginnings>,
 }
@@ -245,6 +247,7 @@ impl Stage {
         let workgroup = [("WORKGROUP", WORKGROUP)];
         Ok(Self {
             sow: Kernel::new(device, &workgroup)?,
+            count: Kernel::new(device, &workgroup)?,
             plan: Kernel::new(device, &workgroup)?,
             find: arithmetic.kernel(device, &workgroup)?,
         })
@@ -292,12 +295,28 @@ impl Stage {
         let (pieces, piece_count) = (buffers.pieces.view(), buffers.count.view());
         let piece_limit = pieces.len() as u32;
         recording.fill(piece_count, 0);
+        let barred = walkers.begun.map(|begun| begun.barred);
+        let groups = strides(walkers.list.len());
+        let arguments = CountPiecesArgs {
+            positions,
+            ends,
+            list: walkers.list,
+            listed: walkers.listed,
+            barred,
+            piece_count,
+            low_x,
+            low_y,
+            exponent,
+            limit: walkers.list.len() as u32,
+            piece_length: grid.piece_length,
+        };
+        recording.dispatch(&self.count, groups, &arguments);
         let arguments = PlanPiecesArgs {
             positions,
             ends,
             list: walkers.list,
             listed: walkers.listed,
-            barred: walkers.begun.map(|begun| begun.barred),
+            barred,
             runs: walkers.runs,
             pieces,
             piece_count,
@@ -308,7 +327,7 @@ impl Stage {
             piece_limit,
             piece_length: grid.piece_length,
         };
-        recording.dispatch(&self.plan, strides(walkers.list.len()), &arguments);
+        recording.dispatch(&self.plan, groups, &arguments);
         let arguments = FindBeginningsArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),

@@ -261,9 +261,16 @@ pub fn sow_seeds(positions: &[DVec2], spokes: &[u32], grid: &Grid) -> Vec<[u32; 
     seeds
 }
 
-/// How many pieces each listed walker has.
-pub fn plan_pieces(positions: &[DVec2], ends: &[[u32; 2]], list: &[u32], grid: &Grid) -> Vec<u32> {
-    list.iter().map(|&walker| grid.pieces(ends[walker as usize].map(|v| positions[v as usize]))).collect()
+/// How many pieces all listed walkers together should have after their first ones.
+pub fn count_pieces(positions: &[DVec2], ends: &[[u32; 2]], list: &[u32], grid: &Grid) -> u64 {
+    list.iter().map(|&walker| u64::from(grid.pieces(ends[walker as usize].map(|v| positions[v as usize])) - 1)).sum()
+}
+
+/// How many pieces each listed walker has, with so much room for later ones.
+pub fn plan_pieces(positions: &[DVec2], ends: &[[u32; 2]], list: &[u32], grid: &Grid, room: usize) -> Vec<u32> {
+    let share = (count_pieces(positions, ends, list, grid) / room.max(1) as u64).min(4096) as u32 + 1;
+    let wanted = |&walker: &u32| grid.pieces(ends[walker as usize].map(|v| positions[v as usize]));
+    list.iter().map(|walker| (wanted(walker) / share).max(1)).collect()
 }
 
 /// What a walk from one vertex to another comes over: half-edges by which it leaves triangles, and vertices.
