@@ -30,7 +30,7 @@ void main() {
         list(i, offsets.at[i]);
     }
     for (uint s = i; s < words.at[STOPS]; s += item_stride()) {
-        Stop stop = stop_at(s, stops, met, offsets, pieces, before, constraints);
+        Stop stop = stop_at(s, words, stops, met, offsets, pieces, before, constraints);
         if (stop.place != NONE) {
             list(stop.constraint, stop.place);
         }

@@ -35,7 +35,7 @@ void main() {
         }
     }
     for (uint s = i; s < words.at[STOPS]; s += item_stride()) {
-        Stop stop = stop_at(s, stops, met, offsets, pieces, before, constraints);
+        Stop stop = stop_at(s, ReadU32(words), stops, met, offsets, pieces, before, constraints);
         if (stop.place != NONE) {
             chains.at[stop.place] = stop.vertex;
         }

@@ -15,9 +15,13 @@ BUFFER(WriteU32x2, uvec2, 8, writeonly);
 
 const uint CROSSES = 0x80000000u;
 
-// For each constraint how many vertices its first piece met, with REVERSED if it began at the second end.
+// For each constraint how many vertices its first piece met, with REVERSED if it began at the second end, and with AGAIN if it
+// was begun again in other pieces: see `plan_again`.
 const uint REVERSED = 0x80000000u;
-const uint MET = 0x7fffffffu;
+const uint AGAIN = 0x40000000u;
+const uint MET = 0x3fffffffu;
+// In a list, in place of an item that does not go on.
+const uint NO_ITEM = 0xffffffffu;
 
 // The words that steer. Items that go on, those of the next round (before the first, the constraints that walk), and which
 // list holds the former.
@@ -36,6 +40,17 @@ const uint LOST_WALK = 12u;
 // Sub-constraints, and vertices in all chains.
 const uint SUB_CONSTRAINTS = 16u;
 const uint CHAINED = 20u;
+
+// Constraints that may be begun again: how many, which, how many buckets along each have a vertex, and how many must.
+const uint MOST_AGAIN = 32u;
+const uint CHOSEN = 25u;
+const uint CHOSEN_LIST = 28u;
+const uint CHOSEN_FOUND = 60u;
+const uint CHOSEN_NEED = 92u;
+// Where the pieces of the first of them begin, buckets of each, vertices met by then.
+const uint CHOSEN_RUN = 124u;
+const uint BUCKETS = 125u;
+const uint STOPS_BEFORE = 126u;
 
 // No list is to grow so long that its count wraps around.
 const uint MOST_STOPS = 0xf0000000u;

@@ -51,6 +51,10 @@ void main() {
     uint walkers = words.at[WALKERS];
     uint item = fresh && i >= walkers ? constraints + (i - walkers) : state.at[list_now(words, items) + i];
 
+    if (item == NO_ITEM) {
+        return;
+    }
+
     // The pieces from `p` up to `end` are those after this one.
     bool later = item >= constraints;
     uint c = item;
@@ -79,7 +83,7 @@ void main() {
     uvec2 both = ends.at[c];
     uint number = later ? 0u : met.at[c];
     bool reversed = ((later ? met.at[c] : number) & REVERSED) != 0u;
-    uint mark = number & REVERSED;
+    uint mark = number & ~MET;
     number &= MET;
     uint from = reversed ? both.y : both.x;
     uint to = reversed ? both.x : both.y;

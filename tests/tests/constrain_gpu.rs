@@ -100,7 +100,7 @@ impl On {
 
 fn assert_walked(gpu: &mut Gpu, stage: &Stage, name: &str, case: &Case) {
     let chained: usize = case.expected.chains.iter().map(<[u32]>::len).sum();
-    let room = Stage::usual_stops(case.constraints.len()).max(chained);
+    let room = Stage::usual_stops(case.constraints.len()).max(2 * chained);
     let grid = grid(&case.positions);
     // Whole, in pieces, and in pieces of a triangle or so; of few constraints, lest they be millions.
     let short = case.positions.len() * case.constraints.len() < 30_000;
@@ -189,6 +189,30 @@ fn many_through_one_vertex_and_one_through_many_triangles() {
     let case = Case::new(&Pslg::new(strip, vec![[0, 3999]]).unwrap());
     assert!(case.expected.crossed_edges[0] > 3900);
     assert_walked(&mut gpu, &stage, "strip", &case);
+}
+
+/// One constraint through very many vertices begins again from some of these: else its walk would take hundreds of rounds.
+#[test]
+fn walks_through_many_vertices_begin_again() {
+    let (mut gpu, stages) = stages();
+    for (turn, count) in [300, 5000, 20_000].into_iter().enumerate() {
+        let case = Case::new(&generate::through_vertices(count, turn as u64));
+        assert_eq!(case.expected.chains.get(0).len(), count + 2);
+        let stage = &stages[turn % 2];
+        assert_walked(&mut gpu, stage, "through vertices", &case);
+        let on = record(&mut gpu, stage, &case, 2 * count + 9, Some(grid(&case.positions)));
+        let rounds = gpu.run(&on.recording).rounds;
+        assert!(rounds.iter().all(|&(name, rounds)| name != "walk" || rounds < 9), "{rounds:?}");
+    }
+    // Several, and others among them; not worth it for rows of twenty.
+    for (points, constraints) in [(3000, 5), (1500, 40)] {
+        let points = generate::lattice(points, 20).points().to_vec();
+        let along = |i: u32, count: u32| [i % 20 * count, (i % 20 + 1) * count - 1];
+        let count = points.len() as u32 / 20;
+        let rows = (0..constraints).map(|i| along(i, count)).chain([[0, count + 1], [7, 3 * count + 2]]);
+        let case = Case::new(&Pslg::new(points, rows.collect()).unwrap());
+        assert_walked(&mut gpu, &stages[1], "rows", &case);
+    }
 }
 
 #[test]

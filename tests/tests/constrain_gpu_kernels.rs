@@ -17,6 +17,7 @@ use polder_vulkan::{Kernel, Shader};
 use vulkan_support::Gpu;
 
 /// Places of words, as in `walk.glsl`.
+const WORDS: usize = 128;
 const WAITING: usize = 0;
 const NEXT: usize = 24;
 const WALKERS: usize = 7;
@@ -141,7 +142,7 @@ fn find_edges() {
         let on = [&spokes, &degrees].map(|words| gpu.buffer(words));
         let given = gpu.buffer(&ends);
         let out = [count, count + 1, count].map(|len| gpu.buffer(&vec![7u32; len]));
-        let mut words = [0; 28];
+        let mut words = [0; WORDS];
         words[LOST_WALK] = NONE;
         let words = gpu.buffer(&words);
         let arguments = FindEdgesArgs {
@@ -174,7 +175,7 @@ fn walk_turn() {
     let kernel = Kernel::<WalkTurn>::new(&gpu.device, &[]).unwrap();
     for (seed, counts) in [[0, 0], [1, 0], [0, 1], [256, 3], [257, 9], [20_000_000, 1000]].into_iter().enumerate() {
         for begins in [true, false] {
-            let mut words: Vec<u32> = vulkan_support::words(seed as u64, 28);
+            let mut words: Vec<u32> = vulkan_support::words(seed as u64, WORDS);
             words[2] &= 1;
             words[3] &= 0xff;
             words[NEXT] = counts[0];
@@ -256,7 +257,7 @@ fn walk_constraints() {
         let walkers = wanted.edges.walkers.len();
         let mut state = vec![0; 3 * items];
         state[items..items + walkers].copy_from_slice(&wanted.edges.walkers);
-        let mut words = [0; 28];
+        let mut words = [0; WORDS];
         (words[WAITING], words[WALKERS], words[LOST_WALK]) = ((walkers + room) as u32, walkers as u32, NONE);
         let stops = wanted.met.iter().map(Vec::len).sum::<usize>();
         let (ends, spokes, met) = (gpu.buffer(&wanted.ends), gpu.buffer(&wanted.spokes), gpu.buffer(&directions));
@@ -357,7 +358,7 @@ fn ended(start: &Start, seed: u64) -> Ended {
         stops.extend(met.iter().enumerate().map(|(k, &v)| [item as u32, k as u32, v]));
     }
     stops.reverse();
-    let mut words = vec![0; 28];
+    let mut words = vec![0; WORDS];
     (words[STOPS], words[LOST_WALK]) = (stops.len() as u32, NONE);
     Ended {
         met: directions.zip(&met).map(|(word, met)| word | met.len() as u32).collect(),

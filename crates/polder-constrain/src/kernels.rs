@@ -46,6 +46,34 @@ define_kernel! {
 }
 
 define_kernel! {
+    /// Walks that are begun again, 3 of 3: what walked on a chosen constraint before ends, if enough vertices were found along it, and
+    /// its new pieces begin.
+    BeginAgain(BeginAgainArgs) = "begin_again";
+    buffers {
+        0: read ends: View<'a, [u32; 2]>,
+        8: read spokes: View<'a, u32>,
+        16: both met: View<'a, u32>,
+        24: both runs: View<'a, u32>,
+        32: both pieces: View<'a, [u32; 4]>,
+        40: both piece_met: View<'a, u32>,
+        48: both stops: View<'a, u32>,
+        56: both state: View<'a, u32>,
+        64: both words: View<'a, u32>,
+    }
+    values {
+        72: constraints: u32,
+        76: piece_limit: u32,
+        80: stop_limit: u32,
+    }
+    argument_bytes 84;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256];
+    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
+    source "a16f2cc21eb77609517ff135d1deab06fa6f74ce4056f34395dad52000224d78";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
     /// The pairs that may be flipped because a triangle of them got its owner in this outer round: they join those that are left
     /// from the inner rounds before. All triangles are looked at, so that pairs are listed in the order of triangles: those nearby
     /// are worked on together in all rounds after. Also sums up what pieces of walks crossed.
@@ -191,7 +219,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c1ef70e7348867b36c2d66b2307405e5e503376e4b2b14cc60d7bd5c0db9987e";
+    source "e7e21b78cb6e95447e7cd935699c87f3924ef87eb684ca908895bef69d037b6f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -265,7 +293,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "00d619fc286e0e65237ddc9da0db82637867075087ded433939aa97191c76753";
+    source "9424e4f785ca554700816caff5dcfdc2dd1f1dca860a2f5873d9a1c270e662fb";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -426,7 +454,31 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "8b963ba1bbd8ba0f13e5717fafbb2a58d63171598b2f220b7ce1e59035c08ada";
+    source "c55dca96f17ff8cdedf4d123b21fa8697fbed6c6524cb9fbd89b51a67dbcf63f";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
+    /// Walks that go on after many steps are begun again in other pieces, if they run through many vertices. 1 of 3, by one workgroup:
+    /// which constraints these may be, if there are few, and room for their pieces.
+    PlanAgain(PlanAgainArgs) = "plan_again";
+    buffers {
+        0: both state: View<'a, u32>,
+        8: read runs: View<'a, u32>,
+        16: both pieces: View<'a, [u32; 4]>,
+        24: both piece_met: View<'a, u32>,
+        32: both piece_count: View<'a, u32>,
+        40: both words: View<'a, u32>,
+    }
+    values {
+        48: constraints: u32,
+        52: piece_limit: u32,
+    }
+    argument_bytes 56;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256];
+    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
+    source "5a457b0754ebf963120301773b0f1440b1e0e611dec279efc4a66cbe5dc181d0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -486,6 +538,32 @@ define_kernel! {
 }
 
 define_kernel! {
+    /// Walks that are begun again, 2 of 3: each vertex between the ends of a chosen constraint, and exactly on it, falls in a bucket
+    /// of those along it. The least of each is where a piece begins.
+    SpreadVertices(SpreadVerticesArgs) = "spread_vertices" and "spread_vertices.integers";
+    buffers {
+        0: read positions: View<'a, [u32; 4]>,
+        8: read ends: View<'a, [u32; 2]>,
+        16: read spokes: View<'a, u32>,
+        24: read met: View<'a, u32>,
+        32: both pieces: View<'a, [u32; 4]>,
+        40: both words: View<'a, u32>,
+    }
+    values {
+        48: low_x: i64,
+        56: low_y: i64,
+        64: exponent: i32,
+        68: vertices: u32,
+    }
+    argument_bytes 72;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
+    capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "41792052b37d892ef73ec8ee9ff62fded6d38d55f228c0fb65dbf99f85fd015d";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
     /// Later pieces that turned out to be superfluous met nothing; what the others met belongs to the chain of their constraint.
     TrimPieces(TrimPiecesArgs) = "trim_pieces";
     buffers {
@@ -501,7 +579,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "fb7a99bcd06d998131c43d165a846596706312154a2a63c75c138c3887da8290";
+    source "71fc8101759d4411bbb066d2d211239ae7779542a2c4e418bf9930edf6d861b9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -534,7 +612,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "c0ca8f85644951f9c19da71985a044350f815583b37b9eaff70c7f22b5c45ea5";
+    source "4bb452430c73c002b6654a1a6b99c8e79d6bf6089a60e8efe81bf8dccd1a952b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -553,6 +631,6 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "bf45cba64d1ea8402d6e6e45ddad764aa4fa1f2b861d8ac40565cec4c2c07ba0";
+    source "51257a59ec6e69efbcfc2939e01bd373b3f41793a6559c1ce3a5fd636c423cfc";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

@@ -40,6 +40,9 @@ pub struct Grid {
     size: [u32; 2],
     /// The length of a piece, in places.
     piece_length: u32,
+    /// Finer places, and that of the lower left corner.
+    fine_exponent: i32,
+    fine_low: [i64; 2],
 }
 
 impl Grid {
@@ -47,7 +50,8 @@ impl Grid {
     pub fn over(low: DVec2, high: DVec2, points: usize) -> Self {
         let cells = cells_of(points) as u64;
         let largest = low.abs().max(high.abs()).max_element();
-        let mut exponent = (largest.to_bits() >> 52 & 0x7ff).max(1) as i32 - 1075;
+        let finest = (largest.to_bits() >> 52 & 0x7ff).max(1) as i32 - 1075;
+        let mut exponent = finest;
         loop {
             let place = |p: DVec2| p.to_array().map(|x| floor_units(x, exponent));
             let (from, to) = (place(low), place(high));
@@ -58,7 +62,10 @@ impl Grid {
                 let points_a_cell = points.max(1) as f64 / (size[0] * size[1]).max(1) as f64;
                 let cells_a_piece = f64::from(TRIANGLES) / (2.2 * points_a_cell.sqrt());
                 let piece_length = (64.0 * cells_a_piece).clamp(64.0, 1e6) as u32;
-                return Self { exponent, low: from, size: size.map(|n| n.min(cells) as u32), piece_length };
+                let fine_exponent = finest.max(exponent - 14);
+                let fine_low = low.to_array().map(|x| floor_units(x, fine_exponent));
+                let size = size.map(|n| n.min(cells) as u32);
+                return Self { exponent, low: from, size, piece_length, fine_exponent, fine_low };
             }
             exponent += 1;
         }
@@ -79,6 +86,23 @@ impl Grid {
     #[doc(hidden)]
     pub fn with_piece_length(self, piece_length: u32) -> Self {
         Self { piece_length: piece_length.max(1), ..self }
+    }
+
+    /// The exponent of places finer than those of cells, and where they begin.
+    #[doc(hidden)]
+    pub fn fine(&self) -> (i32, [i64; 2]) {
+        (self.fine_exponent, self.fine_low)
+    }
+
+    /// In which of so many buckets along a line a point on it falls: for tests.
+    #[doc(hidden)]
+    pub fn bucket(&self, line: [DVec2; 2], p: DVec2, buckets: u32) -> usize {
+        let (exponent, low) = self.fine();
+        let [from, to, at] = [line[0], line[1], p].map(|p| [0, 1].map(|k| floor_units(p[k], exponent) - low[k]));
+        let across = [0, 1].map(|k| (to[k] - from[k]).abs());
+        let k = usize::from(across[0] < across[1]);
+        let bucket = (at[k] - from[k]).abs() * i64::from(buckets) / across[k].max(1);
+        bucket.min(i64::from(buckets) - 1) as usize
     }
 
     /// The cell of a point, by its number.

@@ -4,7 +4,7 @@ use crate::gpu::pieces;
 use polder_vulkan::primitives::Scan;
 use polder_vulkan::{Buffer, Device, Error, Estimate, Pool, View};
 
-const WORDS: usize = 28;
+const WORDS: usize = 128;
 /// Room for later pieces beyond one for every four constraints.
 const SPARE_PIECES: usize = 1 << 16;
 
@@ -18,6 +18,7 @@ pub(super) enum Word {
     SubConstraints = 16,
     Chained = 20,
     Listed = 24,
+    StopsBefore = 126,
 }
 
 /// What the stage holds beside the mesh.

@@ -6,7 +6,8 @@
 //! 3. *Walk.* The others walk straight to their other end, one invocation each, and list the vertices that they meet; long
 //!    ones go in [`pieces`], one invocation for each. Signs are always those of the whole line, so that a step
 //!    is one orientation wherever the walk is. A walk that has not ended after some number of steps goes on in the next
-//!    dispatch.
+//!    dispatch. If few have not ended after the first, all vertices are held against them, and one that runs through many
+//!    begins again in pieces that begin at some of these.
 //! 4. *Chains.* A constraint's chain is its ends and what it met; where chains begin is a prefix sum. From each vertex of a
 //!    chain to the next is a sub-constraint.
 //!
@@ -34,6 +35,8 @@ const NONE: u32 = u32::MAX;
 const WORKGROUP: u32 = 256;
 /// Workgroups of kernels that stride over lists whose length only the device knows.
 const GROUPS: u32 = 1056;
+/// Steps after which a walk is begun again in other pieces, if it runs through many vertices: most pieces have a tenth as many.
+const FIRST_STEPS: u32 = 512;
 
 /// The input's points in the order of the mesh, and which vertices they are.
 #[derive(Clone, Copy, Debug)]
@@ -86,6 +89,8 @@ impl Read {
             return Err(ConstrainError::WalkLost { constraint });
         }
         if needed > room {
+            // How far walks get before they begin again may differ from run to run.
+            let needed = needed.saturating_add(word(Word::StopsBefore));
             return Err(ConstrainError::TooManyStops { needed, room });
         }
         Ok(Counts { sub_constraints: word(Word::SubConstraints).into(), chained: word(Word::Chained).into() })
@@ -96,8 +101,9 @@ impl Read {
 #[derive(Debug)]
 pub struct Stage {
     device: Device,
-    /// Steps of a walk in one dispatch.
+    /// Steps of a walk in one dispatch, and in the first one.
     most: u32,
+    first_most: u32,
     name_points: Kernel<NamePoints>,
     name_ends: Kernel<NameEnds>,
     find_spokes: Kernel<FindSpokes>,
@@ -105,6 +111,9 @@ pub struct Stage {
     pieces: pieces::Stage,
     turn: Kernel<WalkTurn>,
     walk: Kernel<WalkConstraints>,
+    plan_again: Kernel<PlanAgain>,
+    spread: Kernel<SpreadVertices>,
+    begin_again: Kernel<BeginAgain>,
     trim: Kernel<TrimPieces>,
     place: Kernel<PlaceChains>,
     list: Kernel<ListSubConstraints>,
@@ -132,6 +141,7 @@ impl Stage {
         Ok(Self {
             device: device.clone(),
             most,
+            first_most: most.min(FIRST_STEPS),
             name_points: Kernel::new(device, &workgroup)?,
             name_ends: Kernel::new(device, &workgroup)?,
             find_spokes: Kernel::new(device, &workgroup)?,
@@ -139,6 +149,9 @@ impl Stage {
             pieces: pieces::Stage::new(device, arithmetic)?,
             turn: Kernel::new(device, &workgroup)?,
             walk: arithmetic.kernel(device, &workgroup)?,
+            plan_again: Kernel::new(device, &workgroup)?,
+            spread: arithmetic.kernel(device, &workgroup)?,
+            begin_again: Kernel::new(device, &workgroup)?,
             trim: Kernel::new(device, &workgroup)?,
             place: Kernel::new(device, &workgroup)?,
             list: Kernel::new(device, &workgroup)?,
@@ -149,6 +162,7 @@ impl Stage {
     #[doc(hidden)]
     pub fn set_most_steps(&mut self, most: u32) {
         self.most = most.max(2);
+        self.first_most = self.most;
     }
 
     /// Room for vertices between ends that most inputs do with.
@@ -202,7 +216,7 @@ impl Stage {
         self.record_spokes(recording, mesh, buffers);
         self.record_edges(recording, mesh, buffers, ends)?;
         self.record_pieces(recording, mesh, buffers, ends, input.grid)?;
-        self.record_walks(recording, mesh, buffers, ends)?;
+        self.record_walks(recording, mesh, buffers, ends, input.grid)?;
         self.record_chains(recording, buffers, ends, input.grid.is_some());
         Ok(Read { words: recording.read(buffers.words.view()), room: buffers.stops_room as u32 })
     }
@@ -304,6 +318,7 @@ impl Stage {
         mesh: &Mesh,
         buffers: &Buffers,
         ends: View<'_, [u32; 2]>,
+        grid: Option<Grid>,
     ) -> Result<(), Error> {
         let (words, piece_count) = (buffers.words.view(), buffers.pieces.count());
         let piece_limit = buffers.pieces.pieces().len() as u32;
@@ -315,7 +330,7 @@ impl Stage {
         // A walk crosses each edge, or turns over it, from each of its ends once at most.
         let bound = 16 + 8 * (mesh.capacity() as u64) / u64::from(self.most - 1);
         let bound = u32::try_from(bound).unwrap_or(u32::MAX);
-        recording.repeat_ahead("walk", waiting, bound, 1, 4, |round| {
+        let walk = |round: &mut Recording, most| {
             let arguments = WalkConstraintsArgs {
                 triangles: mesh.corners(),
                 links: mesh.twins(),
@@ -333,11 +348,64 @@ impl Stage {
                 constraints: buffers.constraints as u32,
                 piece_limit,
                 stop_limit: buffers.stops_room as u32,
-                most: self.most,
+                most,
             };
             round.dispatch_indirect(&self.walk, groups, &arguments);
             round.dispatch(&self.turn, [1, 1, 1], &turn(0));
-        });
+        };
+        if let Some(grid) = grid {
+            walk(recording, self.first_most);
+            self.record_again(recording, mesh, buffers, ends, grid)?;
+        }
+        recording.repeat_ahead("walk", waiting, bound, 1, 4, |round| walk(round, self.most));
+        Ok(())
+    }
+
+    /// Walks that go on and run through many vertices begin again, from many of these.
+    fn record_again(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        ends: View<'_, [u32; 2]>,
+        grid: Grid,
+    ) -> Result<(), Error> {
+        let (words, state, runs) = (buffers.words.view(), buffers.sub_constraints.view().cast(), buffers.runs()?);
+        let (pieces, piece_count) = (buffers.pieces.pieces().cast(), buffers.pieces.count());
+        let (piece_met, piece_limit) = (buffers.piece_met.view(), buffers.piece_met.len() as u32);
+        let (constraints, spokes, met) = (buffers.constraints as u32, buffers.spokes.view(), buffers.met.view());
+        let arguments = PlanAgainArgs { state, runs, pieces, piece_met, piece_count, words, constraints, piece_limit };
+        recording.dispatch(&self.plan_again, [1, 1, 1], &arguments);
+        let vertices = mesh.vertices();
+        let (exponent, [low_x, low_y]) = grid.fine();
+        let arguments = SpreadVerticesArgs {
+            positions: mesh.positions().cast(),
+            ends: ends.cast(),
+            spokes,
+            met,
+            pieces,
+            words,
+            low_x,
+            low_y,
+            exponent,
+            vertices: vertices as u32,
+        };
+        recording.dispatch(&self.spread, strides(vertices), &arguments);
+        let arguments = BeginAgainArgs {
+            ends: ends.cast(),
+            spokes,
+            met,
+            runs,
+            pieces,
+            piece_met,
+            stops: buffers.stops.view().cast(),
+            state,
+            words,
+            constraints,
+            piece_limit,
+            stop_limit: buffers.stops_room as u32,
+        };
+        recording.dispatch(&self.begin_again, strides(buffers.piece_met.len()), &arguments);
         Ok(())
     }
 

@@ -347,3 +347,34 @@ pub fn find_beginnings(
     }
     None
 }
+
+/// Constraints of walks that go on, and how many buckets each has with so much room for pieces; none if that is not worth it.
+pub fn plan_again(waiting: &[u32], room: usize) -> (Vec<u32>, u32) {
+    let mut chosen = waiting.to_vec();
+    chosen.sort_unstable();
+    chosen.dedup();
+    let count = chosen.len().min(32);
+    let buckets = (room.saturating_sub(count) / count.max(1)).min(16_384) as u32;
+    if buckets < 128 { (Vec::new(), 0) } else { (chosen, buckets) }
+}
+
+/// By bucket along a line the least of the vertices there, or [`NONE`].
+pub fn spread_vertices(positions: &[DVec2], spokes: &[u32], line: [u32; 2], grid: &Grid, buckets: u32) -> Vec<u32> {
+    let [a, b] = line.map(|v| positions[v as usize]);
+    let mut least = vec![NONE; buckets as usize];
+    for (v, &p) in positions.iter().enumerate().filter(|&(v, _)| spokes[v] != NONE) {
+        let between = p != a && p != b && ahead(a, p, b) && ahead(b, p, a);
+        if between && orient2d(a, b, p) == Sign::Zero {
+            let bucket = &mut least[grid.bucket([a, b], p, buckets)];
+            *bucket = (*bucket).min(v as u32);
+        }
+    }
+    least
+}
+
+/// The numbers of a constraint's new pieces, from 1, and the vertices at which they begin; none if it has too few for the pieces
+/// that it had.
+pub fn begin_again(buckets: &[u32], pieces: u32) -> Option<Vec<(u32, u32)>> {
+    let found = (1..).zip(buckets.iter().copied()).filter(|&(_, v)| v != NONE).collect::<Vec<_>>();
+    (found.len() >= 64 + 2 * pieces as usize).then_some(found)
+}
