@@ -146,10 +146,14 @@ pub(crate) struct TriangulateArgs {
     #[arg(long, value_name = "FORMAT")]
     pub(crate) to: Option<MeshFormat>,
 
-    /// What becomes of segments that cross where no point is, on every backend: the CPU names or cuts them. New points follow the input's, in the order of rounds, x, y;
-    /// with .ele, --node writes where they are
+    /// What becomes of segments that cross where no point is; whatever the backend, the CPU names or cuts them. New points
+    /// follow the input's, in the order of rounds, x, y; with .ele, --node writes where they are
     #[arg(long, value_name = "POLICY", default_value = "error")]
     pub(crate) crossings: CrossingChoice,
+
+    /// With --crossings split: how many points to add at most
+    #[arg(long, value_name = "N", default_value_t = 10_000_000)]
+    pub(crate) max_added: usize,
 
     /// Leave out what lies outside all outlines, and the holes that a .poly names: what segments do not hold back is
     /// eaten from the hull and from each hole

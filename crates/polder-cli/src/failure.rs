@@ -62,6 +62,12 @@ impl Failure {
                 Self::new(kind, message).with("pairs", json!(pairs)).with("truncated", truncated).with("first", first)
             }
             polder::Error::Cancelled(_) => Self::new(kind, "cancelled"),
+            polder::Error::DeviceLost { what } | polder::Error::OutOfMemory { what } => {
+                Self::new(kind, format!("{what}; --backend cpu needs no device"))
+            }
+            polder::Error::SplitTooLarge { what: what @ "added vertices", limit } => {
+                Self::new(kind, format!("more than {limit} {what}; --max-added says how many may be"))
+            }
             other => Self::new(kind, other.to_string()),
         }
     }

@@ -189,8 +189,9 @@ impl Target {
         builder.prefix(".polder-");
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        // The error without the name of the temporary file, which says nothing to anybody.
-        let plain = |e: io::Error| e.raw_os_error().map(io::Error::from_raw_os_error).unwrap_or(e);
+        // Errors without the name of the temporary file, which says nothing to anybody.
+        std::fs::metadata(folder)?;
+        let plain = |e: io::Error| io::Error::from(e.kind());
         Ok(Self::File { temporary: builder.tempfile_in(folder).map_err(plain)?, path })
     }
 

@@ -24,7 +24,8 @@ pub(crate) fn triangulate(job: &Job, args: &TriangulateArgs) -> Result<ExitCode,
         CrossingChoice::Error => CrossingPolicy::Error,
         CrossingChoice::Split => CrossingPolicy::Split,
     };
-    let mut output = compute_with(job, &input, &args.way, crossings)?;
+    let options = Options { crossings, max_added_vertices: args.max_added, ..Options::default() };
+    let mut output = compute_with(job, &input, &args.way, options)?;
     if args.domain {
         keep_domain(job, &input, &mut output)?;
     }
@@ -94,19 +95,20 @@ pub(crate) fn keep_domain(job: &Job, input: &Input, output: &mut Output) -> Resu
 
 /// One sentence on what came out.
 fn summary(report: &polder::Report) -> String {
+    let counted = |count: usize, [one, many]: [&str; 2]| format!("{count} {}", if count == 1 { one } else { many });
     let mut parts = vec![
-        format!("{} triangles", report.triangles),
-        format!("{} vertices", report.points.vertices),
-        format!("{} constrained edges", report.constraints.constrained_edges),
+        counted(report.triangles, ["triangle", "triangles"]),
+        counted(report.points.vertices, ["vertex", "vertices"]),
+        counted(report.constraints.constrained_edges, ["constrained edge", "constrained edges"]),
     ];
     for (count, what) in [
-        (report.points.duplicates, "duplicate points"),
-        (report.points.added, "points added where segments cross"),
-        (report.constraints.repeated.len(), "repeated segments"),
-        (report.constraints.zero_length.len(), "segments of no length"),
+        (report.points.duplicates, ["duplicate point", "duplicate points"]),
+        (report.points.added, ["point added where segments cross", "points added where segments cross"]),
+        (report.constraints.repeated.len(), ["repeated segment", "repeated segments"]),
+        (report.constraints.zero_length.len(), ["segment of no length", "segments of no length"]),
     ] {
         if count > 0 {
-            parts.push(format!("{count} {what}"));
+            parts.push(counted(count, what));
         }
     }
     let time = match report.seconds {
@@ -145,12 +147,11 @@ fn with_added(mut input: Input, triangulation: &Triangulation) -> Result<Input, 
 
 /// Triangulates with the bar and the cancel flag at work; segments that cross are an error.
 pub(crate) fn compute(job: &Job, input: &Input, way: &WayArgs) -> Result<Output, Failure> {
-    compute_with(job, input, way, CrossingPolicy::Error)
+    compute_with(job, input, way, Options::default())
 }
 
-fn compute_with(job: &Job, input: &Input, way: &WayArgs, crossings: CrossingPolicy) -> Result<Output, Failure> {
+fn compute_with(job: &Job, input: &Input, way: &WayArgs, options: Options) -> Result<Output, Failure> {
     let options = Options {
-        crossings,
         backend: way.backend.backend(),
         threads: way.threads.into(),
         grid: way.grid,
@@ -158,7 +159,7 @@ fn compute_with(job: &Job, input: &Input, way: &WayArgs, crossings: CrossingPoli
         device: way.device.as_deref().map_or_else(Selection::default, Selection::parse),
         progress: Some(job.progress()),
         cancel: Some(job.cancel.clone()),
-        ..Options::default()
+        ..options
     };
     job.stage("triangulating");
     polder::triangulate(&input.pslg, &options).map_err(|error| Failure::of_library(error, input.first))

@@ -62,3 +62,29 @@ fn constraints_too_and_crossings_are_named_or_split() {
     };
     assert_eq!(split("vulkan"), split("cpu"));
 }
+
+/// Faults that the environment asks for, which builds with debug assertions heed.
+#[test]
+fn what_fails_on_a_device_is_one_line_and_an_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let dir = folder.path();
+    text(polder(dir, "generate segments 300 --segments 30 -o in.poly"));
+    let faulty = |fault: &str, args: &str| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_polder"));
+        command.current_dir(dir).env("POLDER_FAULT", fault).args(args.split(' ')).output().unwrap()
+    };
+    for (fault, kind, line) in [
+        ("lose:4", "device_lost", "polder: the device was lost; --backend cpu needs no device\n"),
+        ("time_out:4", "device_lost", "polder: the device did not finish within "),
+        ("refuse:9", "out_of_memory", "polder: out of device memory: "),
+    ] {
+        let told = faulty(fault, "triangulate in.poly -o out.ele --backend vulkan");
+        let error = String::from_utf8(told.stderr).unwrap();
+        assert!(error.starts_with(line) && error.lines().count() == 1, "{fault}: {error}");
+        assert_eq!((told.status.code(), told.stdout.len()), (Some(3), 0), "{fault}");
+        assert!(!dir.join("out.ele").exists(), "{fault}");
+        let told = faulty(fault, "triangulate in.poly -o out.ele --backend vulkan --error-format json");
+        let error: Value = serde_json::from_str(std::str::from_utf8(&told.stderr).unwrap()).unwrap();
+        assert_eq!(error["kind"], kind);
+    }
+}

@@ -487,9 +487,12 @@ fn segments_that_cross_are_split_where_that_is_asked_for() {
     assert_eq!(node.lines().count(), 6);
     assert!(node.lines().last().unwrap().starts_with("5 2 1.5"), "{node}");
     let said = ok(dir, "triangulate cross.poly --crossings split -o out.ele").err;
-    assert!(said.contains("--node") && said.contains("1 points added where segments cross"), "{said}");
+    assert!(said.contains("--node") && said.contains("1 point added where segments cross"), "{said}");
     for format in ["obj", "ply", "vtk", "svg", "tri"] {
         ok(dir, &format!("triangulate cross.poly --crossings split -o out.{format}"));
     }
     assert!(fs::read_to_string(dir.join("out.obj")).unwrap().contains("v 2 1.5"));
+    let few = polder(dir, "triangulate cross.poly --crossings split --max-added 0 -o no.ele --error-format json");
+    assert_eq!((few.code, few.error()["kind"].clone()), (1, "too_large".into()));
+    assert!(polder(dir, "triangulate cross.poly -o no/x.ele --crossings split").err.ends_with("(os error 2)\n"));
 }

@@ -207,7 +207,7 @@ impl Device {
             memory: Memory::new(allocator, memory_cap, guarded),
             cache,
             pipelines: Pipelines::default(),
-            faults: Faults::default(),
+            faults: Faults::of_environment(),
             self_test: OnceLock::new(),
             guarded: Mutex::default(),
             lost: AtomicBool::new(false),

@@ -21,6 +21,26 @@ impl Default for Faults {
 }
 
 impl Faults {
+    /// What the environment variable `POLDER_FAULT` asks of every device that is opened, so that programs can be tested as
+    /// well: `lose:3`, `time_out:3` or `refuse:3`, the fourth submission, wait or allocation from the opening on. Only in
+    /// programs with debug assertions.
+    pub(crate) fn of_environment() -> Self {
+        let faults = Self::default();
+        let asked =
+            if cfg!(debug_assertions) { std::env::var("POLDER_FAULT").unwrap_or_default() } else { String::new() };
+        if let Some((kind, index)) = asked.split_once(':')
+            && let Ok(index) = index.parse()
+        {
+            match kind {
+                "lose" => faults.lose_at_submission(index),
+                "time_out" => faults.time_out_at_submission(index),
+                "refuse" => faults.refuse_allocation(index),
+                _ => {}
+            }
+        }
+        faults
+    }
+
     /// The device is lost at the submission `index` from now, which does not run.
     pub fn lose_at_submission(&self, index: u64) {
         self.submissions.set(index);
