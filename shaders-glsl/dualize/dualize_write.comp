@@ -1,15 +1,16 @@
-// Dualize, 3 of 3: writes the triangles of each digital Voronoi vertex, and links them by following the borders that leave
+// Dualize, 3 of 4: writes the triangles of each digital Voronoi vertex, and links them by following the borders that leave
 // it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
-// invocations.
-//
-// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead.
+// invocations. Where sites are far apart borders are long, and one invocation would hold up all others: a border that is still
+// under way after some steps is listed, if there is room, for the next kernel.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x_id = 0, local_size_x = 256) in;
 #include "corners.glsl"
 #include "groups.glsl"
+#include "append.glsl"
 
 BUFFER(ReadU32x2, uvec2, 8, readonly);
+BUFFER(WriteU32x2, uvec2, 8, writeonly);
 
 layout(push_constant, std430) uniform Args {
     ReadU32 colors;
@@ -21,23 +22,25 @@ layout(push_constant, std430) uniform Args {
     WriteRows links;
     U32 lost;   // the first corner that a border leaves and leads nowhere
     U32 folded; // the first finite triangle that is not counterclockwise
+    WriteU32x2 far; // half-edge, and the corner that its border has come to; their highest bits: the side where it goes on
+    U32 far_count;
     uint width;
     uint height;
+    uint far_limit;
 };
+
+#include "borders.glsl"
 
 const uint ROWS = 14u;
 const uint WORDS = 2u * ROWS;
-// No border of a flooded diagram is nearly as long.
-const uint LONGEST = 1u << 22;
+// Of four steps each: turns that are made here, and more than any border of a flooded diagram has.
+layout(constant_id = 1) const uint NEAR = 3u;
+const uint LONGEST = 1u << 20;
 
 // For each word of the tile: vertices, those with two triangles, its first slot, triangles before it in the tile.
 shared uvec4 words[WORDS];
 // For each triangle of the tile: its corner in the tile, and whether it is the second there.
 shared uint places[WORDS * 64u];
-
-uint triangles_of(uvec2 bits) {
-    return uint(bitCount(bits.x) + bitCount(bits.y));
-}
 
 uvec4 colors_around(uint x, uint y) {
     return uvec4(
@@ -52,14 +55,6 @@ uint repeated(uvec4 c) {
     return c.x == c.y ? 0u : c.y == c.z ? 1u : c.z == c.w ? 2u : c.w == c.x ? 3u : 4u;
 }
 
-// The half-edge that crosses side s of a vertex.
-uint half_edge(uint slot, uint r, uint s) {
-    if (r == 4u) {
-        return 3u * slot + (s == 0u ? 2u : s == 1u ? 0u : s + 1u);
-    }
-    return 3u * slot + ((s + 3u - r & 3u) + 2u) % 3u;
-}
-
 // The side that half-edge k of a vertex's triangle crosses; not for the edge between its two triangles.
 uint side(uint r, bool is_second, uint k) {
     if (r == 4u) {
@@ -68,54 +63,33 @@ uint side(uint r, bool is_second, uint k) {
     return r + 1u + (k + 1u) % 3u & 3u;
 }
 
-// The pixels ahead of a corner, left and right.
-uvec2 ahead(ivec2 at, ivec2 step) {
-    // Where they lie of the corner: 0 or -1.
-    int sum = step.x + step.y - 1 >> 1;
-    ivec2 left = at + ivec2(step.x - step.y - 1 >> 1, sum);
-    ivec2 right = at + ivec2(sum, step.y - step.x - 1 >> 1);
-    return uvec2(
-        color_of(colors, uint(left.x), uint(left.y), width, height),
-        color_of(colors, uint(right.x), uint(right.y), width, height));
-}
+// A border on its way: the next step, from where.
+struct Walk {
+    ivec2 at;
+    ivec2 step;
+};
 
-// Goes to the next corner of a border with these colors left and right, and turns with it; whether it is a vertex.
-bool reaches(uvec2 sides, inout ivec2 at, inout ivec2 step) {
-    at += step;
-    uvec2 found = ahead(at, step);
-    if (found.x == sides.y) {
-        step = ivec2(-step.y, step.x);
-        return false;
-    }
-    if (found.y == sides.x) {
-        step = ivec2(step.y, -step.x);
-        return false;
-    }
-    return found != sides;
-}
-
-// The half-edge where the border that leaves a corner by side s ends.
-uint follow(uint x, uint y, uint s, uvec2 sides) {
-    // South, east, north, west as a step.
-    ivec2 step = s == 0u ? ivec2(0, -1) : s == 1u ? ivec2(1, 0) : s == 2u ? ivec2(0, 1) : ivec2(-1, 0);
-    ivec2 at = ivec2(x, y);
-    // Several steps a turn, since llvmpipe ends all loops of an invocation after 65535 turns.
-    uint steps = 0u;
-    while (!reaches(sides, at, step) && !reaches(sides, at, step) && !reaches(sides, at, step)
-        && !reaches(sides, at, step)) {
-        steps += 4u;
-        if (steps >= LONGEST) {
-            return GHOST;
+// Follows the border for so many turns of four steps, and says whether it has come to a vertex. Several steps a turn, since
+// llvmpipe ends all loops of an invocation after 65535 turns.
+bool arrives(uvec2 sides, uint turns, inout Walk walk) {
+    [[dont_unroll]] for (uint turn = 0u; turn < turns; turn++) {
+        if (reaches(sides, walk.at, walk.step) || reaches(sides, walk.at, walk.step)
+            || reaches(sides, walk.at, walk.step) || reaches(sides, walk.at, walk.step)) {
+            return true;
         }
     }
-    // It is reached by the opposite side; counterclockwise from there left, right, ahead right, ahead left.
-    uvec2 found = ahead(at, step);
-    uint arrived = step.y != 0 ? uint(1 - step.y) : uint(2 + step.x);
-    uint r = sides.y == found.y ? 1u : found.y == found.x ? 2u : found.x == sides.x ? 3u : 4u;
-    uint word = uint(at.y) * words_in_row(width) + uint(at.x) / 32u;
-    uvec2 before = vertices.at[word] & ((1u << (uint(at.x) & 31u)) - 1u);
-    uint slot = first.at[word] + triangles_of(before);
-    return half_edge(slot, r == 4u ? 4u : arrived + r & 3u, arrived);
+    return false;
+}
+
+// Lists a border, if there is room.
+bool is_listed(uint h, Walk walk) {
+    uint place = append(far_count, 0u);
+    if (place < far_limit) {
+        uint leaving = side_of(walk.step);
+        uint corner = uint(walk.at.y) * (width + 1u) + uint(walk.at.x);
+        far.at[place] = uvec2(h | (leaving & 1u) << 31, corner | (leaving & 2u) << 30);
+    }
+    return place < far_limit;
 }
 
 void main() {
@@ -176,17 +150,23 @@ void main() {
         } else {
             corners = uvec3(c[r + 1u & 3u], c[r + 2u & 3u], c[r + 3u & 3u]);
         }
-        [[unroll]] for (uint k = 0u; k < 3u; k++) {
+        [[dont_unroll]] for (uint k = 0u; k < 3u; k++) {
             uint h = 3u * slot + k;
-            set_apex(triangles, h, corners[k]);
+            set_apex(triangles, h, corners.x);
+            uvec2 sides = corners.zy;
+            corners = corners.yzx;
             if (r == 4u && k == (is_second ? 2u : 1u)) {
                 set_link(links, h, is_second ? h - 4u : h + 4u);
                 continue;
             }
-            uvec2 sides = uvec2(corners[(k + 2u) % 3u], corners[(k + 1u) % 3u]);
-            uint link = follow(x, y, side(r, is_second, k), sides);
-            set_link(links, h, link);
-            if (link == GHOST) {
+            Walk walk = Walk(ivec2(x, y), step_of(side(r, is_second, k)));
+            bool arrived = arrives(sides, NEAR, walk);
+            if (!arrived && is_listed(h, walk)) {
+                continue;
+            }
+            arrived = arrived || arrives(sides, LONGEST, walk);
+            set_link(links, h, arrived ? half_edge_at(sides, walk.at, walk.step) : GHOST);
+            if (!arrived) {
                 atomicMin(lost.at[0], y * (width + 1u) + x);
             }
         }

@@ -5,9 +5,7 @@
 layout(local_size_x_id = 0, local_size_x = 128) in;
 #include "groups.glsl"
 #include "mesh.glsl"
-
-#extension GL_KHR_shader_subgroup_arithmetic : require
-#extension GL_KHR_shader_subgroup_ballot : require
+#include "append.glsl"
 
 BUFFER(Points, uvec4, 16, );
 BUFFER(ReadPositions, uvec4, 16, readonly);
@@ -53,27 +51,6 @@ uint first_item() {
 
 uint item_stride() {
     return gl_NumWorkGroups.x * WORKGROUP;
-}
-
-// A place for one more in a list, from any flow of control.
-uint append(U32 words, uint counter) {
-    uvec4 here = subgroupBallot(true);
-    uint first = 0u;
-    if (subgroupElect()) {
-        first = atomicAdd(words.at[counter], subgroupBallotBitCount(here));
-    }
-    return subgroupBroadcastFirst(first) + subgroupBallotExclusiveBitCount(here);
-}
-
-// The first of so many places in a list, from any flow of control.
-uint reserve(U32 words, uint counter, uint count) {
-    uint before = subgroupExclusiveAdd(count);
-    uint total = subgroupAdd(count);
-    uint first = 0u;
-    if (subgroupElect()) {
-        first = atomicAdd(words.at[counter], total);
-    }
-    return subgroupBroadcastFirst(first) + before;
 }
 
 // How many sites were pinned before those of entry k.

@@ -138,6 +138,7 @@ fn dualize_write() {
             let room = slots as usize + 1;
             let (triangles, links) = (gpu.buffer(&vec![[7_u32; 3]; room]), gpu.buffer(&vec![[7_u32; 3]; room]));
             let (lost_word, folded_word) = (gpu.buffer(&[NONE]), gpu.buffer(&[NONE]));
+            let (far, far_word) = (gpu.buffer(&[[7_u32; 2]]), gpu.buffer(&[0_u32]));
             let arguments = DualizeWriteArgs {
                 colors: colors.view(),
                 pixels: places.view().cast(),
@@ -148,8 +149,12 @@ fn dualize_write() {
                 links: links.view().cast(),
                 lost: lost_word.view(),
                 folded: folded_word.view(),
+                far: far.view().cast(),
+                far_count: far_word.view(),
                 width: diagram.width,
                 height: diagram.height,
+                // All borders are followed here.
+                far_limit: 0,
             };
             run::<DualizeWrite>(gpu, write_groups([diagram.width, diagram.height]), &arguments);
             let mut expected = expected::dualize_write(&diagram, &pixels, &counted.vertices, &first, slots);
@@ -160,8 +165,79 @@ fn dualize_write() {
             expected.mesh.links.push([7; 3]);
             assert!(gpu.fetch(triangles.view()) == expected.mesh.triangles, "{name}: triangles");
             assert!(gpu.fetch(links.view()) == expected.mesh.links, "{name}: links");
+            assert_eq!(gpu.fetch(far.view()), [[7; 2]]);
             folded += u32::from(expected.folded != NONE);
         }
         assert!(folded > 10 && lines > 10, "{folded} {lines} show nothing");
+    });
+}
+
+/// Long borders are listed with the corner that they have come to, as many as there is room for, and each leads from there to
+/// the half-edge that it would have been linked to.
+#[test]
+fn dualize_leap() {
+    with_device(|shared| {
+        let gpu = &mut shared.gpu;
+        let (mut leaps, mut full) = (0, 0);
+        let sparse = [([300, 200], 9), ([700, 500], 40), ([1, 900], 3), ([900, 2], 7), ([400, 400], 2)];
+        let sparse = sparse.map(|(size, count)| {
+            let sites = voronoi_gpu_support::anywhere(size, count, 3);
+            (format!("{count} on {size:?}"), reference::flooding::flood(&sites).unwrap().diagram, sites)
+        });
+        let flooded = diagrams().into_iter().filter(|(name, ..)| !name.contains("random"));
+        for (turn, (name, diagram, sites)) in sparse.into_iter().chain(flooded).enumerate() {
+            let counted = expected::dualize_count(&diagram, sites.count as u32);
+            let (first, slots) = polder_vulkan::reference::exclusive_scan(&counted.counts);
+            let whole = expected::dualize_write(&diagram, &sites.pixels, &counted.vertices, &first, slots);
+            let room = [1000, 3][turn % 2];
+            let (colors, places) = (gpu.buffer(&diagram.colors), gpu.buffer(&sites.pixels));
+            let (vertices, first_buffer) = (gpu.buffer(&counted.vertices), gpu.buffer(&first));
+            let (slots_word, lost, folded) = (gpu.buffer(&[slots]), gpu.buffer(&[NONE]), gpu.buffer(&[NONE]));
+            let [triangles, links] = [(); 2].map(|()| gpu.buffer(&vec![[7_u32; 3]; slots as usize]));
+            let (far, far_word) = (gpu.buffer(&vec![[7_u32; 2]; room]), gpu.buffer(&[0_u32]));
+            let arguments = DualizeWriteArgs {
+                colors: colors.view(),
+                pixels: places.view().cast(),
+                vertices: vertices.view().cast(),
+                first: first_buffer.view(),
+                slots: slots_word.view(),
+                triangles: triangles.view().cast(),
+                links: links.view().cast(),
+                lost: lost.view(),
+                folded: folded.view(),
+                far: far.view().cast(),
+                far_count: far_word.view(),
+                width: diagram.width,
+                height: diagram.height,
+                far_limit: room as u32,
+            };
+            run::<DualizeWrite>(gpu, write_groups([diagram.width, diagram.height]), &arguments);
+            let listed = gpu.fetch(far_word.view())[0] as usize;
+            let list = gpu.fetch(far.view())[..listed.min(room)].to_vec();
+            let arguments = DualizeLeapArgs {
+                colors: colors.view(),
+                pixels: places.view().cast(),
+                vertices: vertices.view().cast(),
+                first: first_buffer.view(),
+                triangles: triangles.view().cast(),
+                links: links.view().cast(),
+                lost: lost.view(),
+                far: far.view().cast(),
+                far_count: far_word.view(),
+                width: diagram.width,
+                height: diagram.height,
+                far_limit: room as u32,
+            };
+            run::<DualizeLeap>(gpu, [3, 1, 1], &arguments);
+            let found = gpu.fetch(links.view());
+            for (h, link) in expected::dualize_leap(&diagram, &counted.vertices, &first, &list) {
+                assert_eq!(Some(found.as_flattened()[h as usize]), link, "{name}: {h}");
+            }
+            assert!(found == whole.mesh.links, "{name}: links");
+            assert_eq!(gpu.fetch(lost.view()), [NONE]);
+            leaps += list.len();
+            full += usize::from(listed > room);
+        }
+        assert!(leaps > 200 && full > 3, "{leaps} {full} show nothing");
     });
 }

@@ -52,11 +52,41 @@ define_kernel! {
 }
 
 define_kernel! {
-    /// Dualize, 3 of 3: writes the triangles of each digital Voronoi vertex, and links them by following the borders that leave
-    /// it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
-    /// invocations.
+    /// Dualize, 4 of 4: the links of half-edges whose borders are long.
     ///
-    /// The two colors that a border separates stay the same along it, so that a step reads only the two pixels ahead.
+    /// Between two sites a border lies along their bisector, and no two sites have more than one (their edge would be there twice),
+    /// so that wherever these two colors meet it is theirs. So it is taken in leaps: farther and farther on, then back by halves,
+    /// and the rest in steps. Along the side of the grid, where a site may have several borders, many pixels ahead are read at once.
+    DualizeLeap(DualizeLeapArgs) = "dualize_leap";
+    buffers {
+        0: read colors: View<'a, u32>,
+        8: read pixels: View<'a, u32>,
+        16: read vertices: View<'a, [u32; 2]>,
+        24: read first: View<'a, u32>,
+        32: read triangles: View<'a, u32>,
+        40: written links: View<'a, u32>,
+        48: both lost: View<'a, u32>,
+        56: read far: View<'a, [u32; 2]>,
+        64: read far_count: View<'a, u32>,
+    }
+    values {
+        72: width: u32,
+        76: height: u32,
+        80: far_limit: u32,
+    }
+    argument_bytes 84;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256];
+    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
+    source "a9b859ea670810881d199f92bee713cd7110be180ad31ea3aa48531cff0554f4";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
+    /// Dualize, 3 of 4: writes the triangles of each digital Voronoi vertex, and links them by following the borders that leave
+    /// it. A workgroup takes 64 corners of each of 14 rows, which at 7 pixels a point hold about as many triangles as it has
+    /// invocations. Where sites are far apart borders are long, and one invocation would hold up all others: a border that is still
+    /// under way after some steps is listed, if there is room, for the next kernel.
     DualizeWrite(DualizeWriteArgs) = "dualize_write";
     buffers {
         0: read colors: View<'a, u32>,
@@ -68,16 +98,19 @@ define_kernel! {
         48: written links: View<'a, u32>,
         56: both lost: View<'a, u32>,
         64: both folded: View<'a, u32>,
+        72: written far: View<'a, [u32; 2]>,
+        80: both far_count: View<'a, u32>,
     }
     values {
-        72: width: u32,
-        76: height: u32,
+        88: width: u32,
+        92: height: u32,
+        96: far_limit: u32,
     }
-    argument_bytes 80;
+    argument_bytes 100;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
-    constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e32694a9501dc9beb45354db64bef70996b6941e04bbe3162d02e94260abacdd";
+    constants ["WORKGROUP"(0) = 256, "NEAR"(1) = 3];
+    capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
+    source "2e1223008e07ef2f147be39b6e38a04c9816dd0f133b14092958adfd03479fe4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -358,7 +391,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "f3053df72d071785254beac17b3ef6f557a615eb8948fd0446c4145b6b8f76d7";
+    source "a6afdc3f9cf00de5fe1c9d4c4a79a1cdf8c59a4348163d5753f2850e00206a71";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -385,7 +418,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "3639a47dd8c105cd184677e2b34671a68164dd60ee713eacc4ceff4e03b8deed";
+    source "adf9b315bbeca1850cce846503afbf564805c6ce8823b18cb7fc9da60d26ae94";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -431,7 +464,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "7a6af660247acba69c267264a1150929c9ed1564cb36d4f3fedb45ace84b4347";
+    source "fbbe4a8f05372b9f4da2015fd1115f4dd3266c412e02d8309cf463b1351ecdaf";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -453,7 +486,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "9d2efddd1ac87c0945e6c32f59a259fc66531a857c0e07738d115f935eb089a1";
+    source "11066f5169aedc4cf0d705590efee71076d672155e57025656fd2bd9d366f52f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -487,7 +520,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1, "FEW"(2) = 1024];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "42575670394651b24f464c3acdf2b94129e808081c47015cd77028addc5eeb81";
+    source "0e6311d30966f5a2e102888bbf6cc9fe3d3d11e0718e504f86bcecec663e3cc2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -514,7 +547,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "776eca3661fc35015187f1e60fd4e8c22de0dd031ef97c5a48e0cb5f7c3b3437";
+    source "dc30e9424903879387ee8d2416594864cf3585767c463608b40fdffae7cc3b68";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -540,7 +573,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8c3a450132b0a13b0b5e224c01230e0eff605322df7ffd4b2026851bfff72f7e";
+    source "43c7285d6648b50ec5e0ef3fb6a34a4bb69233756b27a7a29409600713156f81";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -563,7 +596,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "67e43ba73f1debeaa8666cb6412a881bfcae9581c87745d62d18033f0c8c641f";
+    source "1949713572a0c2a828f085714535e3101d7f8f17ecb6996d98bf5e9a31f22704";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -584,7 +617,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "b2392646a55fbb8034d04f3032980fe5684c0996a081726c8b011f4c351586de";
+    source "5d09dbcea45946d15fa9d61fb8fbb0319fa59b952dd26cda0b3e457bb79085b4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -614,6 +647,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "4d6c7daa8723b106306c10b4c7c2bf3641ae4cbc4a2a3092ff0584f5e7b82fec";
+    source "516e00781aa0b2cb7120ed64f5c9e719d9dfb0a1d08260d5a284f77396b0720b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

@@ -6,6 +6,8 @@
 //! 2. *Check* that there are as many triangles as a sphere of the sites has.
 //! 3. *Write and link.* Each half-edge of a vertex's triangles follows the border that it crosses, two pixels a step, to
 //!    the vertex at the other end. Borders are short, about two sides of pixels, wherever points are.
+//! 4. *Leap.* Borders that are longer than a few steps have been listed and are followed by a kernel of their own, in leaps
+//!    along the bisector of their two sites. One that did not fit on the list has been followed in steps.
 //!
 //! Triangles that are not counterclockwise are found on the way. A diagram that is no flooded one leaves no triangle, and
 //! [`Read::result`] says what was wrong with it.
@@ -24,7 +26,11 @@ const COUNT_TILE: [u32; 2] = [256, 8];
 const WRITE_TILE: [u32; 2] = [64, 14];
 const WORKGROUP: u32 = 256;
 const NONE: u32 = u32::MAX;
-const WORDS: usize = 32;
+const WORDS: usize = 36;
+/// Pixels for each long border that there is room for.
+const PIXELS_A_LONG_BORDER: usize = 64;
+/// Workgroups that follow long borders.
+const LEAP_GROUPS: [u32; 3] = [528, 1, 1];
 
 /// Places of single words in the counts: views begin at multiples of 4 words.
 #[derive(Clone, Copy)]
@@ -37,6 +43,7 @@ enum Word {
     Folded = 20,
     Total = 24,
     Sites = 28,
+    Far = 32,
 }
 
 /// What the stage takes: a flooded diagram and its sites, on the device.
@@ -81,6 +88,11 @@ pub fn words_of([width, height]: [u32; 2]) -> usize {
     words_in_row(width) as usize * (height as usize + 1)
 }
 
+/// Borders that are left to the last kernel at most.
+fn long_borders([width, height]: [u32; 2]) -> usize {
+    (width as usize * height as usize).div_ceil(PIXELS_A_LONG_BORDER)
+}
+
 /// Workgroups of the kernel that counts.
 pub fn count_groups(size: [u32; 2]) -> [u32; 3] {
     tiles(size, COUNT_TILE)
@@ -95,12 +107,13 @@ fn tiles([width, height]: [u32; 2], tile: [u32; 2]) -> [u32; 3] {
     [(width + 1).div_ceil(tile[0]), (height + 1).div_ceil(tile[1]), 1]
 }
 
-/// Scratch memory of the stage, for one size of the grid: three words for 32 corners.
+/// Scratch memory of the stage, for one size of the grid: three words for 32 corners, and a list.
 #[derive(Debug)]
 pub struct Buffers {
     size: [u32; 2],
     vertices: Buffer<[u32; 2]>,
     first: Buffer<u32>,
+    far: Buffer<[u32; 2]>,
     counts: Buffer<u32>,
     scan: Scan,
 }
@@ -110,6 +123,7 @@ impl Buffers {
     pub fn give(&self, pool: &Pool) {
         self.vertices.give(pool);
         self.first.give(pool);
+        self.far.give(pool);
     }
 
     fn word(&self, word: Word) -> Result<View<'_, u32>, Error> {
@@ -124,6 +138,7 @@ pub struct Stage {
     count: Kernel<DualizeCount>,
     check: Kernel<DualizeCheck>,
     write: Kernel<DualizeWrite>,
+    leap: Kernel<DualizeLeap>,
 }
 
 impl Stage {
@@ -139,6 +154,7 @@ impl Stage {
             count: Kernel::new(device, &workgroup)?,
             check: Kernel::new(device, &[])?,
             write: Kernel::new(device, &workgroup)?,
+            leap: Kernel::new(device, &workgroup)?,
         })
     }
 
@@ -148,6 +164,7 @@ impl Stage {
         Estimate::new()
             .buffer::<[u32; 2]>("vertices of the grid", words)
             .buffer::<u32>("slots of the grid", words)
+            .buffer::<[u32; 2]>("long borders", long_borders(size))
             .buffer::<u32>("counts", WORDS)
             .and(Scan::estimate(words))
     }
@@ -168,6 +185,7 @@ impl Stage {
             size,
             vertices: Buffer::new(&self.device, "vertices of the grid", words)?,
             first: Buffer::new(&self.device, "slots of the grid", words)?,
+            far: Buffer::new(&self.device, "long borders", long_borders(size))?,
             counts: Buffer::new(&self.device, "counts", WORDS)?,
             scan: Scan::new(&self.device, words)?,
         })
@@ -229,10 +247,28 @@ impl Stage {
             links: output.links.cast(),
             lost: buffers.word(Word::Lost)?,
             folded: buffers.word(Word::Folded)?,
+            far: buffers.far.view().cast(),
+            far_count: buffers.word(Word::Far)?,
             width,
             height,
+            far_limit: buffers.far.len() as u32,
         };
         recording.dispatch(&self.write, write_groups(input.size), &arguments);
+        let arguments = DualizeLeapArgs {
+            colors,
+            pixels: input.pixels.cast(),
+            vertices: buffers.vertices.view().cast(),
+            first,
+            triangles: output.triangles.cast(),
+            links: output.links.cast(),
+            lost: buffers.word(Word::Lost)?,
+            far: buffers.far.view().cast(),
+            far_count: buffers.word(Word::Far)?,
+            width,
+            height,
+            far_limit: buffers.far.len() as u32,
+        };
+        recording.dispatch(&self.leap, LEAP_GROUPS, &arguments);
         Ok(Read { words: recording.read(buffers.counts.view()), width })
     }
 }

@@ -157,7 +157,7 @@ pub(super) fn write(diagram: &Diagram, first: &[u32], slots: usize) -> (GhostMes
 }
 
 /// Follows the border that leaves `corner` by side `s` to the next vertex, and by which of its sides it arrives.
-fn follow(diagram: &Diagram, corner: Corner, s: usize) -> Option<(Corner, usize)> {
+pub(super) fn follow(diagram: &Diagram, corner: Corner, s: usize) -> Option<(Corner, usize)> {
     let (mut at, mut out) = (corner, s);
     for _ in 0..LONGEST_BORDER {
         at = at.across(out);

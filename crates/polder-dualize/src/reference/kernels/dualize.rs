@@ -2,7 +2,7 @@
 
 use super::super::corners::{Corner, Kind, colors, kind};
 pub use super::super::dualize::triangles_of;
-use super::super::dualize::write;
+use super::super::dualize::{follow, write};
 use polder_mesh::{GhostMesh, NONE};
 use polder_voronoi::Diagram;
 
@@ -91,11 +91,7 @@ pub fn dualize_write(
     if slots == 0 {
         return Written { mesh: GhostMesh::default(), lost: NONE, folded: NONE };
     }
-    let slot = &|y: u32, x: u32| {
-        let word = (y * words_in_row(diagram.width) + x / 32) as usize;
-        let before: u32 = vertices[word].iter().map(|bits| (bits & !(u32::MAX << (x % 32))).count_ones()).sum();
-        first[word] + before
-    };
+    let slot = &|y: u32, x: u32| slot_of(diagram, vertices, first, Corner { x, y });
     let first: Vec<u32> = (0..=diagram.height).flat_map(|y| (0..=diagram.width).map(move |x| slot(y, x))).collect();
     let (mesh, lost) = write(diagram, &first, slots as usize);
     let folded = mesh.finite().find(|&t| {
@@ -107,4 +103,30 @@ pub fn dualize_write(
         lost: lost.map_or(NONE, |Corner { x, y }| y * (diagram.width + 1) + x),
         folded: folded.map_or(NONE, |t| t as u32),
     }
+}
+
+/// The slot of a corner's first triangle.
+fn slot_of(diagram: &Diagram, vertices: &[[u32; 2]], first: &[u32], Corner { x, y }: Corner) -> u32 {
+    let word = (y * words_in_row(diagram.width) + x / 32) as usize;
+    let before: u32 = vertices[word].iter().map(|bits| (bits & !(u32::MAX << (x % 32))).count_ones()).sum();
+    first[word] + before
+}
+
+/// The half-edges of some borders, each with what it is linked to. `far` holds for each border a half-edge and a corner that
+/// the border passes; their highest bits are the side by which it leaves that corner. None where it leads nowhere.
+pub fn dualize_leap(
+    diagram: &Diagram,
+    vertices: &[[u32; 2]],
+    first: &[u32],
+    far: &[[u32; 2]],
+) -> Vec<(u32, Option<u32>)> {
+    let columns = diagram.width + 1;
+    let link_of = |&[h, corner]: &[u32; 2]| {
+        let side = (h >> 31 | corner >> 31 << 1) as usize;
+        let (h, corner) = (h & !(1 << 31), corner & !(1 << 31));
+        let end = follow(diagram, Corner { x: corner % columns, y: corner / columns }, side);
+        let half_edge = |(to, side)| kind(colors(diagram, to)).half_edge(slot_of(diagram, vertices, first, to), side);
+        (h, end.map(half_edge))
+    };
+    far.iter().map(link_of).collect()
 }
