@@ -20,6 +20,7 @@ layout(push_constant, std430) uniform Args {
 };
 
 const uint NO_BAND = 0xffffu;
+const uint AT_ONCE = 8u;
 
 ivec2 site_of(uint entry, uint y) {
     uint column = entry & 0xffffu;
@@ -140,14 +141,24 @@ void main() {
         starts.at[stacks + begin] = last;
         return;
     }
+    // Some at a time, so that their reads do not wait for each other.
     uint begins = width;
-    for (uint b = bands; b > 0u;) {
-        b--;
-        uint word = live.at[stacks + b];
-        uint first = word & 0xffu;
-        if (first < (word >> 8 & 0xffu)) {
-            begins = entries.at[row + b * band + first] >> 16;
+    for (uint end = bands; end > 0u; end -= min(end, AT_ONCE)) {
+        uint words[AT_ONCE];
+        uint first_pixels[AT_ONCE];
+        [[unroll]] for (uint k = 0u; k < AT_ONCE; k++) {
+            words[k] = k < end ? live.at[stacks + end - 1u - k] : 0u;
         }
-        starts.at[stacks + b] = begins;
+        [[unroll]] for (uint k = 0u; k < AT_ONCE; k++) {
+            uint first = words[k] & 0xffu;
+            bool is_empty = first >= (words[k] >> 8 & 0xffu);
+            first_pixels[k] = is_empty ? NONE : entries.at[row + (end - 1u - k) * band + first] >> 16;
+        }
+        [[unroll]] for (uint k = 0u; k < AT_ONCE; k++) {
+            begins = min(begins, first_pixels[k]);
+            if (k < end) {
+                starts.at[stacks + end - 1u - k] = begins;
+            }
+        }
     }
 }

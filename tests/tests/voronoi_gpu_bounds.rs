@@ -104,8 +104,9 @@ fn the_device_fits_the_grid_that_the_host_fits() {
             }
             (expected, found) => assert_eq!(&expected, found),
         }
-        for options in [Options::default(), Resolution::LongerSide(300).into(), Resolution::LongerSide(0).into()] {
-            let fit = box_on_device.clone().and_then(|b| GridMapping::fit_bounds(&b, points.len(), &options));
+        let plain = Resolution::PixelsPerPoint(7.0);
+        for options in [plain, Resolution::LongerSide(300), Resolution::LongerSide(0)].map(Options::from) {
+            let fit = box_on_device.clone().and_then(|b| GridMapping::fit_bounds(&b, None, points.len(), &options));
             assert_eq!(fit, GridMapping::fit(&points, &options));
             refused += usize::from(fit.is_err());
         }

@@ -27,7 +27,7 @@ fn work(device: &Device) -> Result<Found, Error> {
     let read = FindBounds::new(device)?.record(&mut recording, input.view())?;
     let report = engine.run(&recording, &RunOptions::default())?;
     let bounds = read.bounds(&report).unwrap();
-    let mapping = GridMapping::fit_bounds(&bounds, points.len(), &Resolution::LongerSide(70).into()).unwrap();
+    let mapping = GridMapping::fit_bounds(&bounds, None, points.len(), &Resolution::LongerSide(70).into()).unwrap();
 
     let stage = Stage::new(device)?;
     let buffers = stage.buffers(points.len(), mapping.size())?;

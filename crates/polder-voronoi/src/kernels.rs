@@ -162,6 +162,23 @@ define_kernel! {
 }
 
 define_kernel! {
+    /// Occupancy, 2 of 2: how many cells have points; the same for cells that are twice as wide and high, and so on. A workgroup
+    /// takes 64 by 64 cells, an invocation a row of them.
+    CountCells(CountCellsArgs) = "count_cells";
+    buffers {
+        0: read bits: View<'a, u32>,
+        8: both counts: View<'a, u32>,
+    }
+    values {}
+    argument_bytes 16;
+    workgroup [Fixed(64), Fixed(1), Fixed(1)];
+    constants [];
+    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
+    source "07dd6580c4a40e244842e1b849c2adf152b737468f8835f2be60e162b88df7e3";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
     /// Mapping, 3 of 7: the lowest index keeps a pixel, in the order of pixels that have points; a bit for each point that loses.
     ElectSites(ElectSitesArgs) = "elect_sites";
     buffers {
@@ -274,6 +291,28 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
     source "f290602c1d45facce0129a83d4788070687c20e60d56b06d342891d2b4356a3e";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
+    /// Occupancy, 1 of 2: a bit for each cell that has a point. Of every `every` runs of eight points one is looked at. Also makes
+    /// zeros of the counts.
+    MarkCells(MarkCellsArgs) = "mark_cells";
+    buffers {
+        0: read points: View<'a, u64>,
+        8: read bounds: View<'a, u64>,
+        16: both bits: View<'a, u32>,
+        24: written counts: View<'a, u32>,
+    }
+    values {
+        32: count: u32,
+        36: every: u32,
+    }
+    argument_bytes 40;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256];
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "5991f300671ad085f8976194ef693270392243fcb8065aed0a64929d8d8743bb";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -433,7 +472,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "ddae7ab92cfea0da61ed4bf8ddade3fed49bdf064a997d39adb6a539044908b7";
+    source "73d475ece7b877da022f65715e322dba647750dc666164212ff13811ffc0b1cb";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -46,16 +46,24 @@
 //!
 //! The caller who asks for a number of pixels along the longer side gets square ones in any case.
 //!
+//! # Crowds
+//!
+//! Unless told otherwise there are 7 pixels for each point, but fewer where the points leave most of their box empty: see the
+//! module `occupancy`.
+//!
 //! Departures: \[QCT\] divides by a rounded scale, which may put a point into a neighboring pixel; its translation
 //! truncates instead of flooring, its largest coordinate falls off the grid, and its range overflows or vanishes for
 //! the largest and smallest numbers. Its sites stand at the lower left corners of pixels; here at their centers.
 
 use crate::bounds::checked_count;
-use crate::{Bounds, VoronoiError};
+use crate::{Bounds, Occupancy, VoronoiError};
 use glam::DVec2;
 
 /// The longest side of a grid, in pixels.
 pub const MAX_SIDE: u32 = 1 << 15;
+
+/// Pixels for each point, unless told.
+const USUAL: f64 = 7.0;
 
 /// A pixel's half side has at most this many bits.
 const HALF_BITS: u32 = 19;
@@ -69,6 +77,8 @@ const THIN: u128 = 8;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Resolution {
+    /// 7 pixels for each point; fewer where points crowd, so that most of them would have no site anywhere near.
+    Adaptive,
     /// About so many pixels for each point, as far as the longest side allows; more where the bounding box is so thin that
     /// few rows, or columns, would be left.
     PixelsPerPoint(f64),
@@ -81,13 +91,13 @@ pub enum Resolution {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// How fine the grid shall be; 7 pixels for each point unless told.
+    /// How fine the grid shall be; adaptive unless told.
     pub resolution: Resolution,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { resolution: Resolution::PixelsPerPoint(7.0) }
+        Self { resolution: Resolution::Adaptive }
     }
 }
 
@@ -123,20 +133,29 @@ impl GridMapping {
     ///
     /// If there are no points, a coordinate is not finite, or the resolution is out of its range.
     pub fn fit(points: &[DVec2], options: &Options) -> Result<Self, VoronoiError> {
-        Self::fit_bounds(&Bounds::of(points)?, points.len(), options)
+        let bounds = Bounds::of(points)?;
+        let is_adaptive = options.resolution == Resolution::Adaptive;
+        let occupancy = if is_adaptive { Occupancy::of(points, &bounds) } else { None };
+        Self::fit_bounds(&bounds, occupancy.as_ref(), points.len(), options)
     }
 
-    /// Fits a grid to a bounding box of so many points: the same grid as the points themselves give.
+    /// Fits a grid to a bounding box of so many points: with their occupancy the same grid as the points themselves give.
+    /// Where none is given they are taken to fill the box.
     ///
     /// # Errors
     ///
     /// If the number is zero or more than 32-bit numbers can count, or the resolution is out of its range.
-    pub fn fit_bounds(bounds: &Bounds, points: usize, options: &Options) -> Result<Self, VoronoiError> {
+    pub fn fit_bounds(
+        bounds: &Bounds,
+        occupancy: Option<&Occupancy>,
+        points: usize,
+        options: &Options,
+    ) -> Result<Self, VoronoiError> {
         checked_count(points)?;
         let ranges = Range::of(bounds);
         let finest = ranges[0].finest().max(ranges[1].finest());
         let extent = ranges.map(|range| range.extent(finest));
-        let axes = match Wish::of(points, extent, options.resolution)? {
+        let axes = match Wish::of(points, occupancy, extent, options.resolution)? {
             Wish::Square { longer } => {
                 let scale = Scale::of(extent[0].max(extent[1]), longer, finest);
                 ranges.map(|range| Axis::fit(range, scale))
@@ -282,15 +301,22 @@ enum Wish {
 
 impl Wish {
     /// What the caller says, or such that the area has the pixels wanted.
-    fn of(points: usize, extent: [u64; 2], resolution: Resolution) -> Result<Self, VoronoiError> {
+    fn of(
+        points: usize,
+        occupancy: Option<&Occupancy>,
+        extent: [u64; 2],
+        resolution: Resolution,
+    ) -> Result<Self, VoronoiError> {
         let per_point = match resolution {
             Resolution::LongerSide(side) if (1..=MAX_SIDE).contains(&side) => return Ok(Self::Square { longer: side }),
             Resolution::LongerSide(side) => return Err(VoronoiError::GridSide { side, limit: MAX_SIDE }),
+            Resolution::Adaptive => USUAL,
             Resolution::PixelsPerPoint(wanted) if (1.0 / 1024.0..=1024.0).contains(&wanted) => wanted,
             Resolution::PixelsPerPoint(_) => return Err(VoronoiError::PixelsPerPoint),
         };
         // The wish in 1/1024; at most 2^20 times 2^32 points, times 2^54 units: far from the end of 128 bits.
         let area = (points as u128 * (per_point * 1024.0) as u128 / 1024).max(1);
+        let area = occupancy.filter(|_| resolution == Resolution::Adaptive).map_or(area, |found| found.pixels(area));
         let (longer, shorter) = (u128::from(extent[0].max(extent[1])), u128::from(extent[0].min(extent[1])));
         // A side w along the longer extent makes w * w * shorter / longer pixels, and at least w.
         let side = (area * longer).checked_div(shorter).map_or(area, |square| square.isqrt().min(area)).max(1);
@@ -306,13 +332,13 @@ impl Wish {
 }
 
 /// The exponent of the last place of a finite number: the number is an integer of at most 53 bits times 2 to it.
-fn last_place(x: f64) -> i32 {
+pub(crate) fn last_place(x: f64) -> i32 {
     let biased = (x.to_bits() >> 52 & 0x7ff) as i32;
     biased.max(1) - 1075
 }
 
 /// `floor(x / 2^exponent)`, saturated at 62 bits.
-fn floor_units(x: f64, exponent: i32) -> i64 {
+pub(crate) fn floor_units(x: f64, exponent: i32) -> i64 {
     let fraction = (x.to_bits() & ((1 << 52) - 1)) as i64;
     let implicit = if x.to_bits() >> 52 & 0x7ff == 0 { 0 } else { 1 << 52 };
     let magnitude = fraction | implicit;

@@ -59,6 +59,13 @@ impl FindBounds {
     }
 }
 
+impl FindBounds {
+    /// The box on the device, as five ordered numbers.
+    pub(super) fn words(&self) -> View<'_, u64> {
+        self.bounds.view()
+    }
+}
+
 /// Where the box will be found in the report of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct BoundsRead {

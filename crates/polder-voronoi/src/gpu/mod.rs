@@ -26,11 +26,13 @@
 
 mod bounds;
 mod buffers;
+mod cells;
 mod record;
 mod results;
 
 pub use bounds::{BoundsRead, FindBounds};
 pub use buffers::{Buffers, CountsRead};
+pub use cells::{FindOccupancy, OccupancyRead};
 pub use results::Results;
 
 use crate::kernels::*;

@@ -3,6 +3,7 @@
 //! The steps in order: [`map`], [`color`], [`debris`], [`recolor`]; [`diagram`] is all of them.
 
 mod bounds;
+mod cells;
 mod color;
 mod debris;
 pub mod flooding;
@@ -11,6 +12,7 @@ mod map;
 mod recolor;
 
 pub use bounds::{bound_partials, bound_points};
+pub use cells::{count_cells, mark_cells};
 pub use color::color;
 pub use debris::debris;
 pub use map::{elect, map};

@@ -192,9 +192,9 @@ fn a_side_cut_short_does_not_make_the_other_coarser() {
     let corners = [DVec2::ZERO, DVec2::new(1.0, 1e-3)];
     let bounds = polder_voronoi::Bounds::of(&corners).unwrap();
     // 7 million pixels: 83666 x 83 square ones.
-    let mapping = GridMapping::fit_bounds(&bounds, 1_000_000, &Options::default()).unwrap();
+    let mapping = GridMapping::fit_bounds(&bounds, None, 1_000_000, &Options::default()).unwrap();
     assert_eq!(mapping.size(), [MAX_SIDE, 83]);
-    let square = GridMapping::fit_bounds(&bounds, 150_000, &Options::default()).unwrap();
+    let square = GridMapping::fit_bounds(&bounds, None, 150_000, &Options::default()).unwrap();
     assert_eq!((square.size(), square.is_square()), ([32403, 32], true));
 }
 
@@ -292,4 +292,61 @@ fn points_outside_the_grid_go_to_the_nearest_pixel() {
     let mapping = GridMapping::fit(&[DVec2::ZERO, DVec2::ONE], &Resolution::LongerSide(10).into()).unwrap();
     assert_eq!(mapping.pixel(DVec2::new(f64::MAX, f64::MIN)), [9, 0]);
     assert_eq!(mapping.pixel(DVec2::new(f64::NEG_INFINITY, f64::INFINITY)), [0, 9]);
+}
+
+/// The grids of many points, adaptive and not.
+mod crowds {
+    use super::*;
+    use polder_voronoi::reference::map;
+
+    fn grids(points: &[DVec2]) -> [(u64, usize); 2] {
+        [Resolution::Adaptive, Resolution::PixelsPerPoint(7.0)].map(|resolution| {
+            let mapping = GridMapping::fit(points, &resolution.into()).unwrap();
+            assert!(mapping.is_square());
+            let [width, height] = mapping.size().map(u64::from);
+            (width * height, map(points, &mapping).unwrap().count)
+        })
+    }
+
+    #[test]
+    fn what_fills_its_box_has_seven_pixels_a_point() {
+        for count in [65_536, 100_000, 300_000] {
+            let mut random = Random(count as u64);
+            let uniform: Vec<DVec2> = (0..count).map(|_| DVec2::new(random.unit(), random.unit())).collect();
+            let lattice: Vec<DVec2> = (0..count).map(|i| DVec2::new((i % 256) as f64, (i / 256) as f64)).collect();
+            for points in [uniform, lattice] {
+                let [adaptive, plain] = grids(&points);
+                assert_eq!(adaptive, plain);
+            }
+        }
+    }
+
+    /// Points on a circle, and in a few heaps.
+    #[test]
+    fn what_crowds_has_two() {
+        let count = 200_000;
+        let mut random = Random(5);
+        let mut circle = |_| {
+            let angle = std::f64::consts::TAU * random.unit();
+            DVec2::new(angle.cos(), 0.7 * angle.sin())
+        };
+        let circle: Vec<DVec2> = (0..count).map(&mut circle).collect();
+        let mut random = Random(6);
+        let mut heap = |i| DVec2::new(random.unit(), random.unit()) * 1e-5 + DVec2::new((i % 3) as f64, (i % 7) as f64);
+        let heaps: Vec<DVec2> = (0..count).map(&mut heap).collect();
+        for points in [circle, heaps] {
+            let [(pixels, sites), plain] = grids(&points);
+            assert!(plain.0 > 1_390_000 && plain.0 / plain.1 as u64 > 32, "{plain:?}");
+            assert!((390_000..410_000).contains(&pixels) && sites > 20, "{pixels} pixels, {sites} sites");
+        }
+    }
+
+    /// Thin boxes have few cells along one side, from which nothing is to be learned.
+    #[test]
+    fn thin_boxes_are_what_they_were() {
+        let mut random = Random(7);
+        let points: Vec<DVec2> = (0..100_000).map(|_| DVec2::new(random.unit(), 1e-3 * random.unit())).collect();
+        let thin = |resolution: Resolution| GridMapping::fit(&points, &resolution.into()).unwrap();
+        assert_eq!(thin(Resolution::Adaptive), thin(Resolution::PixelsPerPoint(7.0)));
+    }
 }

@@ -21,6 +21,7 @@ pub(super) struct Pipeline {
     pub(super) pool: Pool,
     pub(super) device: Device,
     pub(super) bounds: voronoi::FindBounds,
+    pub(super) occupancy: voronoi::FindOccupancy,
     pub(super) voronoi: voronoi::Stage,
     pub(super) dualize: dualize::Stage,
     pub(super) shift: shift::Stage,
@@ -35,13 +36,14 @@ pub(super) struct Pipeline {
 
 impl Pipeline {
     pub(super) fn new(device: &Device, arithmetic: Arithmetic) -> Result<Self, Error> {
-        let bounds = voronoi::FindBounds::new(device)?;
+        let (bounds, occupancy) = (voronoi::FindBounds::new(device)?, voronoi::FindOccupancy::new(device)?);
         let pool = Pool::default();
         let device = &device.reusing(&pool);
         Ok(Self {
             pool,
             device: device.clone(),
             bounds,
+            occupancy,
             voronoi: voronoi::Stage::new(device)?,
             dualize: dualize::Stage::new(device)?,
             shift: shift::Stage::new(device, arithmetic)?,

@@ -5,7 +5,7 @@ use super::{Gpu, constraints, internal, line};
 use crate::report::Stopwatch;
 use crate::{Error, Options, Report};
 use polder_mesh::{DVec2, MeshError, Progress, Pslg};
-use polder_voronoi::{Bounds, GridMapping, Resolution};
+use polder_voronoi::{Bounds, GridMapping, Occupancy, Resolution};
 use polder_vulkan::primitives::{Operation, Reduce};
 use polder_vulkan::{Buffer, Engine, Recording, RunOptions, RunReport, View};
 use std::sync::atomic::Ordering;
@@ -56,12 +56,12 @@ impl Gpu {
             return Ok((None, self.report(watch, (0, 0), None, &[])));
         }
         let mut runs = Vec::new();
-        let bounds = self.bounds(&input, options, &mut runs)?;
+        let (bounds, occupancy) = self.bounds(&input, options, &mut runs)?;
         let resolution = match options.grid {
             Some(side) => Resolution::LongerSide(side).into(),
             None => polder_voronoi::Options::default(),
         };
-        let mapping = GridMapping::fit_bounds(&bounds, points, &resolution)?;
+        let mapping = GridMapping::fit_bounds(&bounds, occupancy.as_ref(), points, &resolution)?;
         let constraints = constraints::Needs::usual(input.constraint_count());
         let mut needs = Needs { points, size: mapping.size(), constraints };
         if input.constraints.is_some() {
@@ -93,8 +93,13 @@ impl Gpu {
         Ok((Some(found), report))
     }
 
-    /// The box around the points. Constraints that are not known to name points are looked at on the same occasion.
-    fn bounds(&mut self, input: &Input<'_>, options: &Options, runs: &mut Vec<RunReport>) -> Result<Bounds, Error> {
+    /// The box around the points, and how much of it they fill. Constraints that are not known to name points are looked at on the same occasion.
+    fn bounds(
+        &mut self,
+        input: &Input<'_>,
+        options: &Options,
+        runs: &mut Vec<RunReport>,
+    ) -> Result<(Bounds, Option<Occupancy>), Error> {
         let points = input.points.len();
         let mut recording = Recording::new(&self.device);
         recording.section("bounds");
@@ -102,6 +107,9 @@ impl Gpu {
             0 => None,
             _ => Some(self.pipeline.bounds.record(&mut recording, input.points)?),
         };
+        // Of no use where the caller says how fine the grid shall be.
+        let cells = (points > 0 && options.grid.is_none())
+            .then(|| self.pipeline.occupancy.record(&mut recording, input.points, &self.pipeline.bounds));
         let looked = match input.constraints.filter(|_| !input.checked) {
             Some(constraints) => {
                 let highest = Buffer::<u32>::new(&self.device, "highest index", 1)?;
@@ -121,7 +129,9 @@ impl Gpu {
             return Err(out_of_range(&constraints, points));
         }
         runs.push(report);
-        bounds.ok_or_else(|| internal("constraints among no points"))
+        let bounds = bounds.ok_or_else(|| internal("constraints among no points"))?;
+        let occupancy = runs.last().zip(cells).and_then(|(report, cells)| cells.occupancy(report, &bounds));
+        Ok((bounds, occupancy))
     }
 
     /// Memory for such an input; nothing is done if that is what there is.
