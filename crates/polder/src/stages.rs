@@ -4,6 +4,7 @@ use crate::plan::flips_first;
 use crate::report::Stopwatch;
 use crate::{Error, Options};
 use polder_constrain::{Crossings, InsertReport, Walk};
+use polder_dualize::reference::{self as dualize, Phases};
 use polder_dualize::{Dualized, Inserted, Shifted};
 use polder_flip::FlipReport;
 use polder_flip::reference::flip_with;
@@ -56,13 +57,8 @@ pub fn stages(pslg: &Pslg, options: &Options) -> Result<Option<Stages>, Error> {
 
 const STAGES: u64 = 8;
 
-pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Result<Option<Stages>, Error> {
-    use polder_constrain::reference as constrain;
-    use polder_dualize::reference as dualize;
-
-    if pslg.points().is_empty() {
-        return Ok(None);
-    }
+/// Stages 1 to 4, which know no constraints.
+fn points(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Result<Phases, Error> {
     let monitor = options.monitor();
     let resolution = match options.grid {
         Some(side) => Resolution::LongerSide(side).into(),
@@ -83,16 +79,15 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
 
     let sites = &voronoi.sites;
     let positions: Vec<DVec2> = sites.order.iter().map(|&i| pslg.points()[i as usize]).collect();
-    let centers: Vec<DVec2> =
-        sites.pixels[..sites.count].iter().map(|pixel| voronoi.mapping.center(pixel.map(u32::from))).collect();
 
     monitor.step("dualize", 1, STAGES)?;
     let dualized = dualize::dual(&voronoi.diagram, sites)?;
     watch.stage("dualize", [("necks", dualized.necks)]);
 
     monitor.step("shift", 2, STAGES)?;
-    let shifted =
-        dualize::shift_with(dualized.mesh.clone(), &centers, &positions, &mut || monitor.step("shift", 2, STAGES))?;
+    let shifted = dualize::shift_with(dualized.mesh.clone(), &dualize::centers(&voronoi), &positions, &mut || {
+        monitor.step("shift", 2, STAGES)
+    })?;
     watch.stage(
         "shift",
         [
@@ -117,6 +112,19 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
             ("hull_flips", inserted.hull.flips),
         ],
     );
+    Ok(Phases { voronoi, dualized, shifted, inserted })
+}
+
+pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Result<Option<Stages>, Error> {
+    use polder_constrain::reference as constrain;
+
+    if pslg.points().is_empty() {
+        return Ok(None);
+    }
+    let monitor = options.monitor();
+    let phases = points(pslg, options, watch)?;
+    let (centers, positions) = (phases.centers(), phases.positions(pslg.points()));
+    let Phases { voronoi, dualized, shifted, inserted } = phases;
 
     let flipped_first = match flips_first(pslg.points().len(), pslg.constraints().len()) {
         true => {

@@ -23,4 +23,4 @@ pub use certify::certify;
 pub use dualize::{dual, dualize};
 pub use insert::{ToInsert, insert, insert_with};
 pub use shift::{shift, shift_with};
-pub use whole::{Phases, points_to_insert, triangulate};
+pub use whole::{Phases, centers, points_to_insert, triangulate};

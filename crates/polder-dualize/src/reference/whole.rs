@@ -67,7 +67,8 @@ pub fn points_to_insert(diagram: &Diagram, sites: &Sites, shifted: &Shifted) -> 
     new
 }
 
-fn centers(voronoi: &polder_voronoi::reference::Output) -> Vec<DVec2> {
+/// The pixel centers of the sites.
+pub fn centers(voronoi: &polder_voronoi::reference::Output) -> Vec<DVec2> {
     let sites = &voronoi.sites;
     sites.pixels[..sites.count].iter().map(|&pixel| voronoi.mapping.center(pixel.map(u32::from))).collect()
 }
