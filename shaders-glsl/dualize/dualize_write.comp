@@ -150,26 +150,30 @@ void main() {
         } else {
             corners = uvec3(c[r + 1u & 3u], c[r + 2u & 3u], c[r + 3u & 3u]);
         }
+        set_corners(triangles, slot, corners.x, corners.y, corners.z);
+        uvec3 row = uvec3(GHOST);
         [[dont_unroll]] for (uint k = 0u; k < 3u; k++) {
             uint h = 3u * slot + k;
-            set_apex(triangles, h, corners.x);
-            uvec2 sides = corners.zy;
-            corners = corners.yzx;
+            uint link = GHOST;
             if (r == 4u && k == (is_second ? 2u : 1u)) {
-                set_link(links, h, is_second ? h - 4u : h + 4u);
-                continue;
+                link = is_second ? h - 4u : h + 4u;
+            } else {
+                Walk walk = Walk(ivec2(x, y), step_of(side(r, is_second, k)));
+                uvec2 sides = corners.zy;
+                bool arrived = arrives(sides, NEAR, walk);
+                if (arrived || !is_listed(h, walk)) {
+                    arrived = arrived || arrives(sides, LONGEST, walk);
+                    if (arrived) {
+                        link = half_edge_at(sides, walk.at, walk.step);
+                    } else {
+                        atomicMin(lost.at[0], y * (width + 1u) + x);
+                    }
+                }
             }
-            Walk walk = Walk(ivec2(x, y), step_of(side(r, is_second, k)));
-            bool arrived = arrives(sides, NEAR, walk);
-            if (!arrived && is_listed(h, walk)) {
-                continue;
-            }
-            arrived = arrived || arrives(sides, LONGEST, walk);
-            set_link(links, h, arrived ? half_edge_at(sides, walk.at, walk.step) : GHOST);
-            if (!arrived) {
-                atomicMin(lost.at[0], y * (width + 1u) + x);
-            }
+            corners = corners.yzx;
+            row = uvec3(row.yz, link);
         }
+        set_links(links, slot, row.x, row.y, row.z);
         if (corners.x != GHOST && corners.y != GHOST && corners.z != GHOST) {
             uvec3 at = uvec3(pixels.at[corners.x], pixels.at[corners.y], pixels.at[corners.z]);
             ivec2 a = ivec2(at.y & 0xffffu, at.y >> 16) - ivec2(at.x & 0xffffu, at.x >> 16);

@@ -7,8 +7,9 @@
 // three times the slot of a triangle, or with ON_EDGE a half-edge, the lower one of its edge; NONE for
 // a point that is done. WON says that it got what it claims.
 //
-// For each slot three words: the least score that claims it, the least precedence among points with that score, and by which
-// point it was split last: four times its number, and 3 if the point lies inside, or else which of its edges was split.
+// For each slot two words: the least score that claims it, and the least precedence among points with that score. Behind its
+// links stands when it was split last, with the mark SPLIT: four times the round, and 3 if the point lies inside, or else which
+// of its edges was split.
 #ifndef INSERT_GLSL
 #define INSERT_GLSL
 
@@ -22,10 +23,12 @@ const uint ON_EDGE = 0x80000000u;
 const uint WON = 0x40000000u;
 const uint PLACE = 0x3fffffffu;
 
-const uint CLAIM = 3u;
+const uint CLAIM = 2u;
 const uint SCORE = 0u;
 const uint FIRST = 1u;
-const uint SPLIT = 2u;
+
+// Notes behind links that are of flips have no such mark.
+const uint SPLIT = 0x40000000u;
 
 // The words that steer. Points in the list that is read, and in the other one.
 const uint WAITING = 0u;

@@ -37,6 +37,8 @@ void lay(uint a, uint b) {
     uint t = s + 1u;
     set_corners(triangles, s, b, a, GHOST);
     set_corners(triangles, t, a, b, GHOST);
+    note_of(links, s) = NONE;
+    note_of(links, t) = NONE;
     link(links, 3u * s + 2u, 3u * t + 2u);
     link(links, 3u * s, 3u * t + 1u);
     link(links, 3u * s + 1u, 3u * t);

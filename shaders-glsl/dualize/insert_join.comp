@@ -27,6 +27,7 @@ uint of_priority(uint priority) {
 
 void put(uint t, uvec3 corner) {
     set_corners(triangles, t, corner.x, corner.y, corner.z);
+    note_of(links, t) = NONE;
 }
 
 void join(uint t, uint apex_point, uvec2 own) {

@@ -10,44 +10,38 @@
 layout(push_constant, std430) uniform Args {
     ReadRows triangles;
     Rows links;
-    ReadU32x2 waiting;
-    ReadU32x2 freed;
     ReadU32 places;
     U32 claims;
-    ReadU32 rounds;
     WriteU32 edges;
     U32 edge_count;
     WriteU32 hull_edges;
     U32 hull_count;
     U32 words;
-    uint limit;
     uint edge_limit;
     uint hull_limit;
 };
 
 shared uint place_of_group;
 
-// The name that half-edge g has after the round, and whether its triangle was split; who split it then sees to that side.
+// The name that half-edge g has after the round, and whether its triangle was split; who split it then sees to that side. The
+// links between the parts tell where it went.
 uint renamed(uint g, out bool split) {
-    uint record = claims.at[CLAIM * (g / 3u) + SPLIT];
-    uint p = record >> 2;
-    split = record != NONE && rounds.at[p] == words.at[ROUND];
+    uint t = g / 3u;
+    uvec4 row = FourWords(links)[2u * t].row;
+    split = row.w >> 2 == (SPLIT >> 2 | words.at[ROUND]);
     if (!split) {
         return g;
     }
-    uint k = g % 3u;
-    uint edge = record & 3u;
-    uvec2 own = slots_of(p, freed, ReadU32(words));
+    uint k = g - 3u * t;
+    uint edge = row.w & 3u;
     if (edge == 3u) {
-        return k == 2u ? g : 3u * own[k] + 2u;
+        return k == 0u ? row.x + 1u : k == 1u ? row.y + 2u : g;
     }
+    // Behind the edge, what is left of the triangle leads to the rest of it.
     if (k != (edge + 1u) % 3u) {
         return g;
     }
-    // The lower half-edge of the edge, as the point's place has it, got the first slot, and its new twin is in the second.
-    uint side = g - k + edge;
-    bool lower = link_of(links, side) == 3u * own.y;
-    return 3u * (lower ? own.x : own.y) + 1u;
+    return (k == 0u ? row.x : k == 1u ? row.y : row.z) - 1u;
 }
 
 void main() {
@@ -67,37 +61,52 @@ void main() {
             uint other = places.at[2u * i + 1u];
             claims.at[CLAIM * other + SCORE] = NONE;
             claims.at[CLAIM * other + FIRST] = NONE;
-            parts.w = other;
         }
     }
     if (won) {
-        uvec2 own = slots_of(waiting.at[words.at[PARITY] * limit + i].x, freed, ReadU32(words));
+        uvec3 row = links_of(links, t);
+        uvec2 own = row.xy / 3u;
         parts.yz = own;
         outer = uvec4(3u * t + 2u, 3u * own.x + 2u, 3u * own.y + 2u, NONE);
         count = 3u;
         if (on_edge) {
+            own = uvec2(link_of(links, next_edge(h)), link_of(links, h)) / 3u;
             uint g = link_of(links, 3u * own.x);
             outer = uvec4(prev_edge(h), prev_edge(g), 3u * own.x + 1u, 3u * own.y + 1u);
+            parts = uvec4(t, g / 3u, own);
             count = 4u;
         }
     }
     // With few points left to insert, flips are left to stage 5.
     bool flips = words.at[NEXT] >= (words.at[INSERTED] - words.at[INSERTED_BEFORE] + 15u) / 16u;
+    // All is read before anything is written nearby.
+    uint others[4];
+    bool split[4];
+    bvec4 ghost = bvec4(false);
     uint listed = 0u; // a bit for each
-    for (uint k = 0u; k < count; k++) {
-        bool split;
-        uint side = outer[k];
-        uint other = renamed(link_of(links, side) & HALF_EDGE, split);
-        set_link(links, side, other);
-        if (!split) {
-            set_link(links, other, side);
+    [[unroll]] for (uint k = 0u; k < 4u; k++) {
+        if (k < count) {
+            uint side = outer[k];
+            uvec3 corner = corners(triangles, parts[k]);
+            others[k] = renamed(link_of(links, side) & HALF_EDGE, split[k]);
+            ghost[k] = any(equal(corner, uvec3(GHOST)));
+            // An edge between two that were split is on the list by its lower side.
+            if (flips && (!split[k] || side < others[k])) {
+                uint at = side - 3u * parts[k];
+                bool finite = !ghost[k] || (at == 0u ? corner.x : at == 1u ? corner.y : corner.z) == GHOST;
+                listed |= uint(finite) << k;
+            }
         }
-        // An edge between two that were split is on the list by its lower side.
-        if (flips && (!split || side < other) && origin(triangles, side) != GHOST && destination(triangles, side) != GHOST) {
-            listed |= 1u << k;
-        }
-        if (is_ghost(triangles, parts[k])) {
-            append_triangle(hull_edges, hull_count, hull_limit, parts[k]);
+    }
+    [[unroll]] for (uint k = 0u; k < 4u; k++) {
+        if (k < count) {
+            set_link(links, outer[k], others[k]);
+            if (!split[k]) {
+                set_link(links, others[k], outer[k]);
+            }
+            if (ghost[k]) {
+                append_triangle(hull_edges, hull_count, hull_limit, parts[k]);
+            }
         }
     }
     uint all;

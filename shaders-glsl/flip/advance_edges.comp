@@ -1,5 +1,5 @@
-// The end of a round and the beginning of the next in one: renews the links around all flips, gives claimed triangles back,
-// and tests the edges that are handed on, which claim their triangles for the next round. An illegal edge next to no flip
+// The end of a round and the beginning of the next in one: renews the links around all flips, and
+// tests the edges that are handed on, which claim their triangles for the next round. An illegal edge next to no flip
 // is known to be illegal.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -11,12 +11,11 @@ layout(push_constant, std430) uniform Args {
     ReadRows triangles;
     Rows links;
     ReadPoints positions;
-    U32 state;
-    ReadU32 illegal; // of this round
-    WriteU32 next_illegal;
+    U32 claims;
+    ReadU32x2 illegal; // of this round
+    WriteU32x2 next_illegal;
     U32 words;
     U32 report;
-    uint stride;
     uint scope;
     uint parity; // of this round
 };
@@ -45,37 +44,36 @@ void main() {
         Handed handed;
         handed.some = false;
         if (i < end) {
-            uint h = illegal.at[i >> 2];
+            uvec2 edge = illegal.at[i >> 2];
             uint k = i & 3u;
-            if ((h & WON) != 0u) {
-                h &= HALF_EDGE;
-                uint g = prev_edge(link_of(links, next_edge(h)));
-                if (k < 2u) {
-                    state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
-                }
-                handed = renew(links, state, stride, round, side_of(h, g, k));
-                if (handed.some) {
-                    uint b = origin(triangles, handed.side);
-                    uint c = destination(triangles, handed.side);
-                    if (scope == SCOPE_ALL || b == GHOST || c == GHOST) {
-                        tests++;
-                        if (handed.mark == 0u) {
-                            uint a = apex(triangles, handed.side);
-                            illegal_edge = is_illegal(positions, a, b, c, apex(triangles, handed.outer));
-                        }
+            if ((edge.x & WON) != 0u) {
+                edge.x &= HALF_EDGE;
+                uint side = side_of(edge, k);
+                uint t = side / 3u;
+                uint at = side - 3u * t;
+                uvec4 row = FOUR_WORDS(triangles)[2u * t].row;
+                handed = look_out(links, round, side);
+                uint d = apex(triangles, handed.outer);
+                renew(links, handed);
+                uint b = pick(row, turned(at, 1u));
+                uint c = pick(row, turned(at, 2u));
+                if (handed.some && (scope == SCOPE_ALL || b == GHOST || c == GHOST)) {
+                    tests++;
+                    if (handed.mark == 0u) {
+                        illegal_edge = is_illegal(positions, pick(row, at), b, c, d);
                     }
                 }
             } else if (k == 0u) {
-                handed = leave(links, state, stride, parity, round, h);
+                handed = leave(links, round, edge);
                 illegal_edge = handed.some;
                 tests += uint(handed.some);
             }
         }
-        uint lower = min(handed.side, handed.outer);
+        uvec2 next = uvec2(min(handed.side, handed.outer), max(handed.side, handed.outer));
         uint place = place_in(words, ILLEGAL_COUNT(parity ^ 1u), illegal_edge);
         if (illegal_edge) {
-            claim(state, stride, parity ^ 1u, lower, max(handed.side, handed.outer));
-            next_illegal.at[place] = lower;
+            claim(claims, next.x, next.y);
+            next_illegal.at[place] = next;
         }
     }
     if (tests != 0u) {

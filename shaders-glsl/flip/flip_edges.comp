@@ -7,14 +7,13 @@
 layout(push_constant, std430) uniform Args {
     Rows triangles;
     Rows links;
-    U32 state;
-    U32 illegal;
+    U32 claims;
+    U32x2 illegal;
     MaybeReadU32 edges; // the list that was tested, to be emptied
     MaybeU32 edge_count;
     MaybeU32 listed; // whose bits are cleared
     U32 words;
     U32 report;
-    uint stride;
     uint limit; // edges that the list takes
     uint least; // fewer illegal edges are left to another kernel
     uint parity;
@@ -32,15 +31,10 @@ void main() {
     barrier();
     uint flips = 0u;
     for (uint i = item_index(); i < end; i += item_stride()) {
-        uint h = illegal.at[i];
-        uint mine = priority(h);
-        if (state.at[CLAIM(h, parity)] == mine) {
-            uint g = link_of(links, h);
-            if (state.at[CLAIM(g, parity)] == mine) {
-                flip_pair(triangles, links, state, stride, round, h, g);
-                illegal.at[i] = h | WON;
-                flips++;
-            }
+        uvec2 edge = illegal.at[i];
+        if (flip_pair(triangles, links, claims, round, edge)) {
+            illegal.at[i].x = edge.x | WON;
+            flips++;
         }
     }
     if (flips != 0u) {

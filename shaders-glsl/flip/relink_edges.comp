@@ -6,10 +6,8 @@
 
 layout(push_constant, std430) uniform Args {
     Rows links;
-    U32 state;
-    ReadU32 illegal;
+    ReadU32x2 illegal;
     U32 words;
-    uint stride;
     uint parity;
 };
 
@@ -21,17 +19,9 @@ void main() {
         words.at[ROUND] = round;
     }
     for (uint i = item_index(); i < end; i += item_stride()) {
-        uint h = illegal.at[i >> 2];
-        uint k = i & 3u;
-        if ((h & WON) != 0u) {
-            h &= HALF_EDGE;
-            uint g = prev_edge(link_of(links, next_edge(h)));
-            if (k < 2u) {
-                state.at[CLAIM(k == 0u ? h : g, parity)] = NONE;
-            }
-            renew(links, state, stride, round, side_of(h, g, k));
-        } else if (k == 0u) {
-            leave(links, state, stride, parity, round, h);
+        uvec2 edge = illegal.at[i >> 2];
+        if ((edge.x & WON) != 0u) {
+            renew(links, look_out(links, round, side_of(uvec2(edge.x & HALF_EDGE, edge.y), i & 3u)));
         }
     }
 }

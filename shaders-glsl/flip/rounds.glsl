@@ -7,13 +7,19 @@
 
 BUFFER(SharedU32, uint, 4, coherent);
 BUFFER(MaybeU32, uint, 4, );
+BUFFER(U32x2, uvec2, 8, );
+BUFFER(ReadU32x2, uvec2, 8, readonly);
+BUFFER(WriteU32x2, uvec2, 8, writeonly);
+BUFFER(SharedU32x2, uvec2, 8, coherent);
 
 #ifdef COHERENT
 #define WORDS SharedU32
 #define MESH SharedRows
+#define FOUR_WORDS SharedFourWords
 #else
 #define WORDS U32
 #define MESH Rows
+#define FOUR_WORDS FourWords
 #endif
 #include "tallies.glsl"
 
@@ -43,36 +49,71 @@ const uint SCOPE_HULL = 1u;
 // The mark of an illegal edge that was flipped.
 const uint WON = 0x80000000u;
 
-// State is three arrays of `stride` words: by triangle the least priority that claims it, in even and in odd rounds, else NONE;
-// and its stamp, four times the last round that flipped it, plus the edge along which it was. (Three words side by side
-// made rounds slower by a fifth: neighbors' claims share sectors.)
-#define CLAIM(H, PARITY) ((PARITY) * stride + (H) / 3u)
-#define STAMP(H) (2u * stride + (H) / 3u)
+// By triangle the least priority that claims it, else NONE: who gets a triangle gives it back in the same dispatch. Not behind
+// its corners, where atomics hold up those that read.
+#define CLAIM(T) claims.at[T]
+// Behind the links of a triangle stands its stamp: four times the last round that flipped it, plus the edge along which it was.
+#define STAMP(T) note_of(links, T)
+
+// Lists of illegal edges have both half-edges of each, the lower one first.
 
 // Step 2: an illegal edge claims its two triangles, in the name of its lower half-edge.
-void claim(WORDS state, uint stride, uint parity, uint lower, uint upper) {
+void claim(WORDS claims, uint lower, uint upper) {
     uint mine = priority(lower);
-    atomicMin(state.at[CLAIM(lower, parity)], mine);
-    atomicMin(state.at[CLAIM(upper, parity)], mine);
+    atomicMin(CLAIM(lower / 3u), mine);
+    atomicMin(CLAIM(upper / 3u), mine);
 }
 
-// Step 3, first half: flips h, whose twin is g, if it has both its triangles; then nobody else touches their links. Outer
-// links keep the names that they had before the round.
-void flip_pair(MESH triangles, MESH links, WORDS state, uint stride, uint round, uint h, uint g) {
-    uint h1 = next_edge(h);
-    uint g1 = next_edge(g);
-    uint t_outer = link_of(links, h1);
-    uint u_outer = link_of(links, g1);
-    uint c = apex(triangles, h);
-    uint d = apex(triangles, g);
-    set_apex(triangles, prev_edge(h), d);
-    set_apex(triangles, prev_edge(g), c);
-    set_link(links, h, u_outer);
-    set_link(links, g, t_outer);
-    set_link(links, h1, g1);
-    set_link(links, g1, h1);
-    state.at[STAMP(h)] = round << 2 | h % 3u;
-    state.at[STAMP(g)] = round << 2 | g % 3u;
+uint pick(uvec4 row, uint k) {
+    return k == 0u ? row.x : k == 1u ? row.y : row.z;
+}
+
+uvec4 replaced(uvec4 row, uint k, uint with) {
+    return uvec4(k == 0u ? with : row.x, k == 1u ? with : row.y, k == 2u ? with : row.z, row.w);
+}
+
+uint turned(uint k, uint by) {
+    k += by;
+    return k >= 3u ? k - 3u : k;
+}
+
+// Step 3, first half: flips an edge if it has both its triangles; then nobody else touches their links. Outer links keep the
+// names that they had before the round. Whether it was flipped.
+bool flip_pair(MESH triangles, MESH links, WORDS claims, uint round, uvec2 edge) {
+    uint mine = priority(edge.x);
+    uint t = edge.x / 3u;
+    uint u = edge.y / 3u;
+    bool has_t = CLAIM(t) == mine;
+    bool has_u = CLAIM(u) == mine;
+    // All others find neither this claim nor their own.
+    if (has_t) {
+        CLAIM(t) = NONE;
+    }
+    if (has_u) {
+        CLAIM(u) = NONE;
+    }
+    if (!has_t || !has_u) {
+        return false;
+    }
+    uvec4 corners_t = FOUR_WORDS(triangles)[2u * t].row;
+    uvec4 corners_u = FOUR_WORDS(triangles)[2u * u].row;
+    uint k = edge.x - 3u * t;
+    uint j = edge.y - 3u * u;
+    uvec4 links_t = FOUR_WORDS(links)[2u * t].row;
+    uvec4 links_u = FOUR_WORDS(links)[2u * u].row;
+    uint k1 = turned(k, 1u);
+    uint j1 = turned(j, 1u);
+    uint t_outer = pick(links_t, k1);
+    uint u_outer = pick(links_u, j1);
+    uvec4 new_t = replaced(corners_t, turned(k, 2u), pick(corners_u, j));
+    uvec4 new_u = replaced(corners_u, turned(j, 2u), pick(corners_t, k));
+    FOUR_WORDS(triangles)[2u * t].row = uvec4(new_t.xyz, NONE);
+    FOUR_WORDS(triangles)[2u * u].row = uvec4(new_u.xyz, NONE);
+    links_t = replaced(replaced(links_t, k, u_outer), k1, 3u * u + j1);
+    links_u = replaced(replaced(links_u, j, t_outer), j1, 3u * t + k1);
+    FOUR_WORDS(links)[2u * t].row = uvec4(links_t.xyz, round << 2 | k);
+    FOUR_WORDS(links)[2u * u].row = uvec4(links_u.xyz, round << 2 | j);
+    return true;
 }
 
 // What is left of a side of a round's item for the next round.
@@ -81,54 +122,52 @@ struct Handed {
     uint side;
     uint outer;
     uint mark;
+    // Whether what is outside was flipped in the same round.
+    bool flipped;
 };
 
 // The two triangles of a flip have four outer sides, k from 0 to 3.
-uint side_of(uint h, uint g, uint k) {
-    uint edge = (k & 1u) == 0u ? h : g;
-    return k < 2u ? edge : prev_edge(edge);
+uint side_of(uvec2 edge, uint k) {
+    uint h = (k & 1u) == 0u ? edge.x : edge.y;
+    return k < 2u ? h : prev_edge(h);
 }
 
-// Step 3, second half, after all flips of the round: renews the link of an outer side. The outer edge behind the flipped one
-// went over to the other triangle, on this side as on the far side. An edge between two flips is renewed and handed on by
-// both sides alike, but only the lower one hands it on.
-Handed renew(MESH links, WORDS state, uint stride, uint round, uint side) {
+// Step 3, second half, after all flips of the round: what is outside of an outer side now. The outer edge behind a flipped
+// one went over to the other triangle, on this side as on the far side. An edge between two flips is handed on by both sides
+// alike, but only the lower one does.
+Handed look_out(MESH links, uint round, uint side) {
     Handed handed;
     handed.side = side;
     uint outer = link_of(links, side);
     handed.mark = outer & CONSTRAINED;
     outer &= HALF_EDGE;
-    uint stamp = state.at[STAMP(outer)];
-    bool flipped = stamp >> 2 == round;
-    if (flipped) {
-        uint edge = outer - outer % 3u + (stamp & 3u);
-        outer = outer == next_edge(edge) ? prev_edge(link_of(links, outer)) : outer;
-        set_link(links, side, outer | handed.mark);
-    } else {
-        set_link(links, outer, side | handed.mark);
+    uint o = outer / 3u;
+    uvec4 beyond = FOUR_WORDS(links)[2u * o].row;
+    handed.flipped = beyond.w >> 2 == round;
+    if (handed.flipped) {
+        uint behind = turned(beyond.w & 3u, 1u);
+        outer = outer == 3u * o + behind ? prev_edge(pick(beyond, behind)) : outer;
     }
     handed.outer = outer;
-    handed.some = !flipped || side < outer;
+    handed.some = !handed.flipped || side < outer;
     return handed;
 }
 
-// The same for an illegal edge that was not flipped: it stays active, unless a flip beside it hands it on. It gives back what
-// it claimed. A link that another invocation renews meanwhile leads to the same triangles before and after.
-Handed leave(MESH links, WORDS state, uint stride, uint parity, uint round, uint h) {
-    uint stamp = state.at[STAMP(h)];
-    bool flipped = stamp >> 2 == round;
-    uint side = h;
-    if (flipped && h == next_edge(h - h % 3u + (stamp & 3u))) {
-        side = prev_edge(link_of(links, h));
-    }
-    uint g = twin(links, side);
-    state.at[CLAIM(h, parity)] = NONE;
-    state.at[CLAIM(g, parity)] = NONE;
+// The link that follows from it. To be written after all is read: what has been written near is no longer at hand.
+void renew(MESH links, Handed handed) {
+    uint at = handed.flipped ? handed.side : handed.outer;
+    uint to = handed.flipped ? handed.outer : handed.side;
+    set_link(links, at, to | handed.mark);
+}
+
+// The same for an illegal edge that was not flipped: it stays active, unless a flip beside it hands it on.
+Handed leave(MESH links, uint round, uvec2 edge) {
     Handed handed;
-    handed.some = !flipped && state.at[STAMP(g)] >> 2 != round;
-    handed.side = h;
-    handed.outer = g;
+    handed.some = STAMP(edge.x / 3u) >> 2 != round && STAMP(edge.y / 3u) >> 2 != round;
+    handed.side = edge.x;
+    handed.outer = edge.y;
     handed.mark = 0u;
+    handed.flipped = false;
     return handed;
 }
 

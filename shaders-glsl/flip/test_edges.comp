@@ -13,11 +13,10 @@ layout(push_constant, std430) uniform Args {
     U32 edges;
     ReadU32 edge_count;
     MaybeU32 listed; // a bit for each half-edge, all zero; without, no edge is twice on the list
-    U32 state;
-    WriteU32 illegal;
+    U32 claims;
+    WriteU32x2 illegal;
     U32 words;
     U32 report;
-    uint stride;
     uint limit; // edges that the list takes
     uint scope;
     uint parity;
@@ -68,20 +67,23 @@ void main() {
                     g = h | mark;
                     h = lower;
                 }
-                uint b = origin(triangles, h);
-                uint c = destination(triangles, h);
+                uint t = h / 3u;
+                uint at = h - 3u * t;
+                uvec4 row = FOUR_WORDS(triangles)[2u * t].row;
+                uint b = pick(row, turned(at, 1u));
+                uint c = pick(row, turned(at, 2u));
                 if (scope == SCOPE_ALL || b == GHOST || c == GHOST) {
                     tests++;
                     if ((g & CONSTRAINED) == 0u) {
-                        illegal_edge = is_illegal(positions, apex(triangles, h), b, c, apex(triangles, g));
+                        illegal_edge = is_illegal(positions, pick(row, at), b, c, apex(triangles, g));
                     }
                 }
             }
         }
         uint place = place_in(words, ILLEGAL_COUNT(parity), illegal_edge);
         if (illegal_edge) {
-            claim(state, stride, parity, h, g);
-            illegal.at[place] = h;
+            claim(claims, h, g);
+            illegal.at[place] = uvec2(h, g);
         }
     }
     if (tests != 0u) {

@@ -10,12 +10,11 @@ layout(push_constant, std430) uniform Args {
     ReadRows triangles;
     ReadRows links;
     ReadPoints positions;
-    U32 state;
-    WriteU32 illegal;
+    U32 claims;
+    WriteU32x2 illegal;
     U32 words;
     U32 report;
     ReadU32 slots;
-    uint stride;
     uint scope;
     uint parity;
 };
@@ -85,8 +84,8 @@ void main() {
     [[unroll]] for (uint k = 0u; k < 3u; k++) {
         if ((found >> k & 1u) != 0u) {
             uint h = 3u * t + k;
-            claim(state, stride, parity, h, row[k]);
-            illegal.at[place++] = h;
+            claim(claims, h, row[k]);
+            illegal.at[place++] = uvec2(h, row[k]);
         }
     }
     if (gl_LocalInvocationIndex == 0u && tests_of_group != 0u) {

@@ -2,16 +2,15 @@
 // `triangles`, and among `links` the half-edge on its other side, with the mark of a constrained edge in the highest bit. A
 // free slot has three corners DELETED and three links NONE.
 //
-// Both are of the types below. How they lie in memory is known here alone: all else goes through these macros.
+// A triangle is a record of eight words, one sector of memory: corners in the first three, links from the fifth on. The fourth
+// and the last are for notes of the stages, and NONE in a new triangle: see `note_of`. `triangles` is where records begin, `links` 16 bytes behind. How this lies in memory is known here alone, and
+// in `Mesh` of polder-flip: all else goes through what is below, which reaches more than 4 GiB.
 #ifndef MESH_GLSL
 #define MESH_GLSL
 
 #include "buffers.glsl"
 
-BUFFER(Rows, uint, 4, );
-BUFFER(ReadRows, uint, 4, readonly);
-BUFFER(WriteRows, uint, 4, writeonly);
-BUFFER(SharedRows, uint, 4, coherent);
+#extension GL_EXT_buffer_reference2 : require
 
 const uint CONSTRAINED = 0x80000000u;
 const uint HALF_EDGE = 0x7fffffffu;
@@ -40,25 +39,47 @@ uint priority(uint id) {
     return x ^ (x >> 16);
 }
 
-// These are macros since no function can take arrays of two kinds; arguments are evaluated more than once.
-#define apex(TRIANGLES, H) (TRIANGLES.at[H])
-#define set_apex(TRIANGLES, H, V) TRIANGLES.at[H] = V
+// Where the word of half-edge h lies, from either address.
+uint word_of(uint h) {
+    return h + h / 3u * 5u;
+}
+
+#define MESH_WORDS(NAME, ACCESS)                                                        \
+    layout(buffer_reference, std430, buffer_reference_align = 4) ACCESS buffer NAME { \
+        uint word;                                                                    \
+    }
+MESH_WORDS(Rows, );
+MESH_WORDS(ReadRows, readonly);
+MESH_WORDS(WriteRows, writeonly);
+MESH_WORDS(SharedRows, coherent);
+// Four words at once: the corners or the links of a slot, and the note behind them. The first is not for what other
+// invocations of the same dispatch write.
+layout(buffer_reference, std430, buffer_reference_align = 16) buffer FourWords {
+    uvec4 row;
+};
+layout(buffer_reference, std430, buffer_reference_align = 16) coherent buffer SharedFourWords {
+    uvec4 row;
+};
+
+// These are macros since no function can take arrays of two kinds. The corner opposite half-edge h, and the ends of its edge.
+#define apex(TRIANGLES, H) (TRIANGLES[word_of(H)].word)
+#define set_apex(TRIANGLES, H, V) TRIANGLES[word_of(H)].word = V
 #define origin(TRIANGLES, H) (apex(TRIANGLES, next_edge(H)))
 #define destination(TRIANGLES, H) (apex(TRIANGLES, prev_edge(H)))
-// The corners of slot t, in order.
-#define corners(TRIANGLES, T) (uvec3(TRIANGLES.at[3u * (T)], TRIANGLES.at[3u * (T) + 1u], TRIANGLES.at[3u * (T) + 2u]))
-#define set_corners(TRIANGLES, T, A, B, C) \
-    TRIANGLES.at[3u * (T)] = A;            \
-    TRIANGLES.at[3u * (T) + 1u] = B;       \
-    TRIANGLES.at[3u * (T) + 2u] = C
-#define is_deleted(TRIANGLES, T) (apex(TRIANGLES, 3u * (T)) == DELETED)
+// The corners of slot t, in order, and what they say.
+#define corners(TRIANGLES, T) (uvec3(FourWords(TRIANGLES)[2u * (T)].row))
+#define set_corners(TRIANGLES, T, A, B, C) FourWords(TRIANGLES)[2u * (T)].row = uvec4(A, B, C, NONE)
+// The word behind the corners of slot t, or behind its links. Where new corners or links are set, it becomes NONE.
+#define note_of(ROWS, T) (ROWS[8u * (T) + 3u].word)
+#define is_deleted(TRIANGLES, T) (TRIANGLES[8u * (T)].word == DELETED)
 #define is_ghost(TRIANGLES, T) (any(equal(corners(TRIANGLES, T), uvec3(GHOST))))
 #define is_finite(TRIANGLES, T) (all(lessThan(corners(TRIANGLES, T), uvec3(DELETED))))
 // The other side of h, with the mark; and those of slot t.
-#define link_of(LINKS, H) (LINKS.at[H])
-#define set_link(LINKS, H, V) LINKS.at[H] = V
-#define links_of(LINKS, T) (uvec3(LINKS.at[3u * (T)], LINKS.at[3u * (T) + 1u], LINKS.at[3u * (T) + 2u]))
+#define link_of(LINKS, H) (LINKS[word_of(H)].word)
+#define set_link(LINKS, H, V) LINKS[word_of(H)].word = V
+#define links_of(LINKS, T) (uvec3(FourWords(LINKS)[2u * (T)].row))
 #define set_links(LINKS, T, A, B, C) set_corners(LINKS, T, A, B, C)
+#define set_links_noted(LINKS, T, A, B, C, NOTE) FourWords(LINKS)[2u * (T)].row = uvec4(A, B, C, NOTE)
 // The other side of h, without the mark: HALF_EDGE in a free slot.
 #define twin(LINKS, H) (link_of(LINKS, H) & HALF_EDGE)
 #define is_constrained(LINKS, H) ((link_of(LINKS, H) & CONSTRAINED) != 0u)

@@ -53,6 +53,7 @@ fn measure(device: &Device, case: Case) -> Result<(), Failure> {
     let input =
         Input { points: points.view(), starts: starts.view(), count: None, sites: sites.view(), freed: freed.view() };
     let mut recording = Recording::new(device);
+    flips.record_start(&mut recording, &flip_buffers);
     let read = stage.record(&mut recording, &mesh, (&flips, &flip_buffers), &buffers, input)?;
     // A kept copy of the start, so that a run follows the one before at once, and the device stays at its clocks.
     let kept = Mesh::new(device, positions.len())?;
@@ -61,7 +62,6 @@ fn measure(device: &Device, case: Case) -> Result<(), Failure> {
     let copier = Copier::new(device)?;
     let mut restore = Recording::new(device);
     copier.record(&mut restore, kept.corners(), mesh.corners());
-    copier.record(&mut restore, kept.twins(), mesh.twins());
     copier.record(&mut restore, kept.slots(), mesh.slots());
 
     let counts = read.result(&engine.run(&recording, &RunOptions::default())?)?;

@@ -104,8 +104,7 @@ fn start(device: &Device, engine: &mut Engine, points: &[DVec2]) -> Result<Start
     voronoi.record(&mut recording, &mapping, uploaded.view(), &grid)?;
     let (order, pixels, colors, sites) = (grid.order(), grid.pixels(), grid.colors(), grid.site_count()?);
     let input = dualize::Input { size, colors, pixels, sites };
-    let output = dualize::Output { triangles: mesh.triangles(), links: mesh.links(), slots: mesh.slots() };
-    dualize.record(&mut recording, input, output, &dual)?;
+    dualize.record(&mut recording, input, &mesh, &dual)?;
     let input = shift::Input { mapping: &mapping, points: uploaded.view(), order, pixels, sites };
     flips.record_start(&mut recording, &flip);
     tally.record_clear(&mut recording);

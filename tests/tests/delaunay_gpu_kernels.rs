@@ -38,9 +38,8 @@ fn points_to_insert() {
         voronoi.record(&mut recording, &mapping, uploaded.view(), &diagram).unwrap();
         let (order, pixels, colors) = (diagram.order(), diagram.pixels(), diagram.colors());
         let sites = diagram.site_count().unwrap();
-        let output = dualize::Output { triangles: mesh.triangles(), links: mesh.links(), slots: mesh.slots() };
         let input = dualize::Input { size, colors, pixels, sites };
-        dual.record(&mut recording, input, output, &dual_buffers).unwrap();
+        dual.record(&mut recording, input, &mesh, &dual_buffers).unwrap();
         flips.record_start(&mut recording, &flip_buffers);
         tally.record_clear(&mut recording);
         let input = shift::Input { mapping: &mapping, points: uploaded.view(), order, pixels, sites };

@@ -5,9 +5,10 @@
 mod voronoi_gpu_support;
 mod vulkan_support;
 
-use polder_dualize::gpu::dualize::{Counts, Input, Output, Stage};
+use polder_dualize::gpu::dualize::{Counts, Input, Stage};
 use polder_dualize::reference::{certify, dual};
 use polder_dualize::{DVec2, DualizeError, Dualized};
+use polder_flip::gpu::Mesh;
 use polder_mesh::{GHOST, GhostMesh};
 use polder_tests::families;
 use polder_voronoi::{Diagram, Options, Resolution, Sites, reference};
@@ -25,18 +26,19 @@ fn dualized(
     let size = [diagram.width, diagram.height];
     let buffers = stage.buffers(size).unwrap();
     let (colors, pixels) = (gpu.buffer(&diagram.colors), gpu.buffer(&sites.pixels));
-    let (count, slots) = (gpu.buffer(&[sites.count as u32]), gpu.buffer(&[7_u32]));
+    let count = gpu.buffer(&[sites.count as u32]);
     let room = 2 * sites.pixels.len();
-    let [triangles, links] = [(); 2].map(|()| gpu.buffer(&vec![[7_u32; 3]; room]));
+    let mesh = Mesh::with_slots(&gpu.device, 0, room).unwrap();
+    gpu.engine.upload(mesh.records(), &vec![[7; 8]; room]).unwrap();
     let mut recording = gpu.recording();
     let input = Input { size, colors: colors.view(), pixels: pixels.view(), sites: count.view() };
-    let output = Output { triangles: triangles.view(), links: links.view(), slots: slots.view() };
-    let read = stage.record(&mut recording, input, output, &buffers).unwrap();
+    let read = stage.record(&mut recording, input, &mesh, &buffers).unwrap();
     let report = gpu.run(&recording);
-    let slots = gpu.fetch(slots.view())[0] as usize;
-    let arrays = [triangles, links].map(|array| gpu.fetch(array.view()));
-    assert!(arrays.iter().flat_map(|array| &array[slots..]).all(|&words| words == [7; 3]), "written beyond the end");
-    (arrays.map(|array| array[..slots].to_vec()), read.result(&report))
+    let slots = gpu.fetch(mesh.slots())[0] as usize;
+    let records = gpu.fetch(mesh.records());
+    assert!(records[slots..].iter().all(|&words| words == [7; 8]), "written beyond the end");
+    let rows = |from: usize| records[..slots].iter().map(|record| [0, 1, 2].map(|k| record[from + k])).collect();
+    ([rows(0), rows(4)], read.result(&report))
 }
 
 fn certified(mesh: &GhostMesh, sites: &Sites) -> Result<(), DualizeError> {
@@ -161,12 +163,11 @@ fn a_recording_serves_again() {
         let room = 400;
         let pixels = Buffer::<[u16; 2]>::new(&gpu.device, "pixels", room).unwrap();
         let colors = Buffer::<u32>::new(&gpu.device, "colors", 90 * 70).unwrap();
-        let [count, slots] = [(); 2].map(|()| Buffer::<u32>::new(&gpu.device, "word", 1).unwrap());
-        let [triangles, links] = [(); 2].map(|()| Buffer::<[u32; 3]>::new(&gpu.device, "mesh", 2 * room).unwrap());
+        let count = Buffer::<u32>::new(&gpu.device, "word", 1).unwrap();
+        let on_device = Mesh::with_slots(&gpu.device, 0, 2 * room).unwrap();
         let mut recording = gpu.recording();
         let input = Input { size, colors: colors.view(), pixels: pixels.view(), sites: count.view() };
-        let output = Output { triangles: triangles.view(), links: links.view(), slots: slots.view() };
-        let read = stage.record(&mut recording, input, output, &buffers).unwrap();
+        let read = stage.record(&mut recording, input, &on_device, &buffers).unwrap();
         for points in [1, 2, 30, 400] {
             let sites = anywhere(size, points, points as u64);
             let diagram = reference::flooding::flood(&sites).unwrap().diagram;
@@ -177,8 +178,7 @@ fn a_recording_serves_again() {
             let Dualized { mesh, necks, .. } = dual(&diagram, &sites).unwrap();
             let found = read.result(&report).unwrap();
             assert_eq!((found.necks, found.triangles), (necks, mesh.slots() as u64));
-            assert!(gpu.fetch(triangles.view())[..mesh.slots()] == mesh.triangles, "{points}");
-            assert!(gpu.fetch(links.view())[..mesh.slots()] == mesh.links, "{points}");
+            assert!(on_device.download(&mut gpu.engine).unwrap() == mesh, "{points}");
         }
     });
 }
@@ -193,15 +193,13 @@ fn what_does_not_fit_is_refused() {
         }
         let buffers = stage.buffers([4, 4]).unwrap();
         let (colors, pixels) = (gpu.buffer(&[0_u32; 16]), gpu.buffer(&[[0_u16; 2]; 3]));
-        let (count, slots) = (gpu.buffer(&[1_u32]), gpu.buffer(&[7_u32]));
-        let [triangles, links] = [(); 2].map(|()| gpu.buffer(&[[7_u32; 3]; 4]));
+        let count = gpu.buffer(&[1_u32]);
+        let [mesh, short] = [4, 3].map(|slots| Mesh::with_slots(&gpu.device, 0, slots).unwrap());
         let mut recording = gpu.recording();
         let input = Input { size: [4, 4], colors: colors.view(), pixels: pixels.view(), sites: count.view() };
-        let output = Output { triangles: triangles.view(), links: links.view(), slots: slots.view() };
-        let short = Output { triangles: triangles.slice(0..3).unwrap(), ..output };
-        assert!(stage.record(&mut recording, input, short, &buffers).is_err());
-        assert!(stage.record(&mut recording, Input { size: [2, 8], ..input }, output, &buffers).is_err());
+        assert!(stage.record(&mut recording, input, &short, &buffers).is_err());
+        assert!(stage.record(&mut recording, Input { size: [2, 8], ..input }, &mesh, &buffers).is_err());
         assert!(recording.is_empty());
-        assert!(stage.record(&mut recording, input, output, &buffers).is_ok());
+        assert!(stage.record(&mut recording, input, &mesh, &buffers).is_ok());
     });
 }

@@ -8,6 +8,7 @@ mod vulkan_support;
 use polder_dualize::gpu::dualize::{count_groups, words_of, write_groups};
 use polder_dualize::kernels::*;
 use polder_dualize::reference::kernels::dualize as expected;
+use polder_flip::gpu::Mesh;
 use polder_tests::families;
 use polder_voronoi::{Diagram, Options, Sites, reference};
 use polder_vulkan::{Kernel, Shader};
@@ -134,9 +135,11 @@ fn dualize_write() {
             }
             let colors = gpu.buffer(&diagram.colors);
             let (places, vertices) = (gpu.buffer(&pixels), gpu.buffer(&counted.vertices));
-            let (first_buffer, slots_word) = (gpu.buffer(&first), gpu.buffer(&[slots]));
+            let first_buffer = gpu.buffer(&first);
             let room = slots as usize + 1;
-            let (triangles, links) = (gpu.buffer(&vec![[7_u32; 3]; room]), gpu.buffer(&vec![[7_u32; 3]; room]));
+            let mesh = Mesh::with_slots(&gpu.device, 0, room).unwrap();
+            gpu.engine.upload(mesh.records(), &vec![[7; 8]; room]).unwrap();
+            gpu.engine.upload(mesh.slots().slice(0..1).unwrap(), &[slots]).unwrap();
             let (lost_word, folded_word) = (gpu.buffer(&[NONE]), gpu.buffer(&[NONE]));
             let (far, far_word) = (gpu.buffer(&[[7_u32; 2]]), gpu.buffer(&[0_u32]));
             let arguments = DualizeWriteArgs {
@@ -144,9 +147,9 @@ fn dualize_write() {
                 pixels: places.view().cast(),
                 vertices: vertices.view().cast(),
                 first: first_buffer.view(),
-                slots: slots_word.view(),
-                triangles: triangles.view().cast(),
-                links: links.view().cast(),
+                slots: mesh.slots(),
+                triangles: mesh.corners(),
+                links: mesh.twins(),
                 lost: lost_word.view(),
                 folded: folded_word.view(),
                 far: far.view().cast(),
@@ -157,14 +160,14 @@ fn dualize_write() {
                 far_limit: 0,
             };
             run::<DualizeWrite>(gpu, write_groups([diagram.width, diagram.height]), &arguments);
-            let mut expected = expected::dualize_write(&diagram, &pixels, &counted.vertices, &first, slots);
+            let expected = expected::dualize_write(&diagram, &pixels, &counted.vertices, &first, slots);
             let found = [lost_word, folded_word].map(|word| gpu.fetch(word.view())[0]);
             assert_eq!(found, [expected.lost, expected.folded], "{name}");
             lines += u32::from(slots > 0 && expected.mesh.finite().next().is_none());
-            expected.mesh.triangles.push([7; 3]);
-            expected.mesh.links.push([7; 3]);
-            assert!(gpu.fetch(triangles.view()) == expected.mesh.triangles, "{name}: triangles");
-            assert!(gpu.fetch(links.view()) == expected.mesh.links, "{name}: links");
+            let rows = expected.mesh.triangles.iter().zip(&expected.mesh.links);
+            let mut records: Vec<_> = rows.map(|([a, b, c], [f, g, h])| [*a, *b, *c, NONE, *f, *g, *h, NONE]).collect();
+            records.push([7; 8]);
+            assert!(gpu.fetch(mesh.records()) == records, "{name}");
             assert_eq!(gpu.fetch(far.view()), [[7; 2]]);
             folded += u32::from(expected.folded != NONE);
         }
@@ -193,7 +196,7 @@ fn dualize_leap() {
             let (colors, places) = (gpu.buffer(&diagram.colors), gpu.buffer(&sites.pixels));
             let (vertices, first_buffer) = (gpu.buffer(&counted.vertices), gpu.buffer(&first));
             let (slots_word, lost, folded) = (gpu.buffer(&[slots]), gpu.buffer(&[NONE]), gpu.buffer(&[NONE]));
-            let [triangles, links] = [(); 2].map(|()| gpu.buffer(&vec![[7_u32; 3]; slots as usize]));
+            let mesh = Mesh::with_slots(&gpu.device, 0, slots as usize).unwrap();
             let (far, far_word) = (gpu.buffer(&vec![[7_u32; 2]; room]), gpu.buffer(&[0_u32]));
             let arguments = DualizeWriteArgs {
                 colors: colors.view(),
@@ -201,8 +204,8 @@ fn dualize_leap() {
                 vertices: vertices.view().cast(),
                 first: first_buffer.view(),
                 slots: slots_word.view(),
-                triangles: triangles.view().cast(),
-                links: links.view().cast(),
+                triangles: mesh.corners(),
+                links: mesh.twins(),
                 lost: lost.view(),
                 folded: folded.view(),
                 far: far.view().cast(),
@@ -219,8 +222,8 @@ fn dualize_leap() {
                 pixels: places.view().cast(),
                 vertices: vertices.view().cast(),
                 first: first_buffer.view(),
-                triangles: triangles.view().cast(),
-                links: links.view().cast(),
+                triangles: mesh.corners(),
+                links: mesh.twins(),
                 lost: lost.view(),
                 far: far.view().cast(),
                 far_count: far_word.view(),
@@ -229,7 +232,7 @@ fn dualize_leap() {
                 far_limit: room as u32,
             };
             run::<DualizeLeap>(gpu, [3, 1, 1], &arguments);
-            let found = gpu.fetch(links.view());
+            let found: Vec<_> = gpu.fetch(mesh.records()).iter().map(|&[.., f, g, h, _]| [f, g, h]).collect();
             for (h, link) in expected::dualize_leap(&diagram, &counted.vertices, &first, &list) {
                 assert_eq!(Some(found.as_flattened()[h as usize]), link, "{name}: {h}");
             }

@@ -43,6 +43,7 @@ impl Uploaded {
 fn assert_flipped(gpu: &mut Gpu, stage: &Stage, name: &str, start: &GhostMesh, positions: &[DVec2]) -> FlipReport {
     let on = Uploaded::new(gpu, stage, start, positions);
     let mut recording = gpu.recording();
+    stage.record_start(&mut recording, &on.buffers);
     on.tally.record_clear(&mut recording);
     stage.record_flip(&mut recording, &on.mesh, &on.buffers, &on.tally).unwrap();
     let read = on.tally.read(&mut recording);
@@ -197,6 +198,7 @@ fn a_recording_serves_again_and_buffers_for_less_are_refused() {
     let start = swept(points.points());
     let on = Uploaded::new(&mut gpu, &stages[0], &start, points.points());
     let mut recording = gpu.recording();
+    stages[0].record_start(&mut recording, &on.buffers);
     on.tally.record_clear(&mut recording);
     stages[0].record_flip(&mut recording, &on.mesh, &on.buffers, &on.tally).unwrap();
     let read = on.tally.read(&mut recording);

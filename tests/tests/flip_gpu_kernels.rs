@@ -40,7 +40,7 @@ fn cases() -> Vec<Case> {
         for _ in 0..turn % 4 {
             let (mut illegal, _) = kernels::test_edges(&mesh, &positions, &edges, false, &mut scratch);
             kernels::flip_edges(&mut mesh, &mut scratch, &mut illegal);
-            edges = kernels::relink_edges(&mut mesh, &mut scratch, &illegal);
+            edges = kernels::relink_edges(&mut mesh, &scratch, &illegal);
         }
         cases.push(Case { name: name.to_owned(), positions, mesh, scratch, edges });
     }
@@ -50,7 +50,7 @@ fn cases() -> Vec<Case> {
 /// A case on the device.
 struct Uploaded {
     mesh: Mesh,
-    state: Buffer<u32>,
+    claims: Buffer<u32>,
     list: Buffer<u32>,
     list_count: Buffer<u32>,
     out: Buffer<u32>,
@@ -70,20 +70,22 @@ const LISTED: usize = 12;
 const PENDING: usize = 16;
 
 impl Uploaded {
-    /// With its claims as those of rounds of this parity.
-    fn new(gpu: &mut Gpu, case: &Case, parity: usize, list: &[u32], words: &[(usize, u32)]) -> Self {
+    fn new(gpu: &mut Gpu, case: &Case, list: &[u32], words: &[(usize, u32)]) -> Self {
         let slots = case.mesh.slots();
         let mesh = Mesh::with_slots(&gpu.device, case.positions.len(), slots).unwrap();
         mesh.upload(&mut gpu.engine, &case.mesh, &case.positions).unwrap();
+        let mut records = gpu.fetch(mesh.records());
+        records.iter_mut().zip(&case.scratch.stamps).for_each(|(record, &stamp)| record[7] = stamp);
+        gpu.engine.upload(mesh.records(), &records).unwrap();
         let mut all = [0; 20];
         all[ROUND] = case.scratch.round;
         words.iter().for_each(|&(place, word)| all[place] = word);
-        let room = list.len().max(3 * slots) + 4;
+        let room = list.len().max(6 * slots) + 4;
         let mut padded = list.to_vec();
         padded.resize(room, 7);
         Self {
             mesh,
-            state: gpu.buffer(&state_of(&case.scratch, parity)),
+            claims: gpu.buffer(&case.scratch.claims),
             list: gpu.buffer(&padded),
             list_count: gpu.buffer(&[list.len() as u32]),
             out: gpu.buffer(&vec![7; room]),
@@ -104,8 +106,14 @@ impl Uploaded {
     }
 
     /// The first of a list, whose order is that of arrival.
-    fn sorted(&self, gpu: &mut Gpu, list: &Buffer<u32>, from: usize, count: usize) -> Vec<u32> {
-        sorted(gpu.fetch(list.view())[from..from + count].to_vec())
+    fn sorted(&self, gpu: &mut Gpu, list: &Buffer<u32>, count: usize) -> Vec<[u32; 2]> {
+        sorted(gpu.fetch(list.view().cast())[..count].to_vec())
+    }
+
+    /// Whether claims and stamps are these.
+    fn notes(&self, gpu: &mut Gpu, scratch: &Scratch) -> bool {
+        let stamps: Vec<u32> = gpu.fetch(self.mesh.records()).iter().map(|record| record[7]).collect();
+        gpu.fetch(self.claims.view()) == scratch.claims && stamps == scratch.stamps
     }
 }
 
@@ -116,14 +124,7 @@ fn run<S: Shader>(gpu: &mut Gpu, constants: &[(&'static str, u32)], groups: u32,
     gpu.run(&recording);
 }
 
-/// The three arrays of state; nothing is claimed in rounds of the other parity.
-fn state_of(scratch: &Scratch, parity: usize) -> Vec<u32> {
-    let nothing = vec![NONE; scratch.claims.len()];
-    let claims = if parity == 0 { [&scratch.claims, &nothing] } else { [&nothing, &scratch.claims] };
-    [claims[0].as_slice(), claims[1], &scratch.stamps].concat()
-}
-
-fn sorted(mut list: Vec<u32>) -> Vec<u32> {
+fn sorted(mut list: Vec<[u32; 2]>) -> Vec<[u32; 2]> {
     list.sort_unstable();
     list
 }
@@ -143,14 +144,13 @@ fn test_mesh() {
         for (scope, parity) in [(0, turn as u32 % 2), (1, 0)] {
             let mut scratch = case.scratch.clone();
             let (expected, tests) = kernels::test_mesh(&case.mesh, &case.positions, scope == 1, &mut scratch);
-            let on = Uploaded::new(&mut gpu, case, parity as usize, &[], &[]);
+            let on = Uploaded::new(&mut gpu, case, &[], &[]);
             let arguments = TestMeshArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
-                state: on.state.view(),
-                stride: case.mesh.slots() as u32,
-                illegal: on.out.view(),
+                claims: on.claims.view(),
+                illegal: on.out.view().cast(),
                 words: on.words.view(),
                 report: on.report.view(),
                 slots: on.mesh.slots(),
@@ -160,8 +160,8 @@ fn test_mesh() {
             let groups = case.mesh.slots().div_ceil(256) as u32;
             run::<TestMesh>(&mut gpu, EXACT, groups + 1, &arguments);
             let count = on.word(&mut gpu, 4 * parity as usize) as usize;
-            assert_eq!(on.sorted(&mut gpu, &on.out, 0, count), sorted(expected), "{}", case.name);
-            assert_eq!(gpu.fetch(on.state.view()), state_of(&scratch, parity as usize), "{}", case.name);
+            assert_eq!(on.sorted(&mut gpu, &on.out, count), sorted(expected), "{}", case.name);
+            assert!(on.notes(&mut gpu, &scratch), "{}", case.name);
             let rounds = u64::from(tests != 0);
             assert_eq!(on.report(&mut gpu), [rounds, 0, tests], "{}", case.name);
             assert_eq!(u64::from(on.word(&mut gpu, ANY_TESTED)), rounds);
@@ -179,7 +179,7 @@ fn test_edges() {
         let other_sides = case.edges.iter().enumerate().map(|(i, &h)| if i % 3 == 0 { case.mesh.twin(h) } else { h });
         let lists = [case.edges.clone(), other_sides.collect(), shuffled(&case.mesh, &case.edges)];
         for (list, repeats) in lists.into_iter().zip([false, false, true]) {
-            let on = Uploaded::new(&mut gpu, case, 1, &list, &[]);
+            let on = Uploaded::new(&mut gpu, case, &list, &[]);
             let arguments = TestEdgesArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
@@ -187,9 +187,8 @@ fn test_edges() {
                 edges: on.list.view(),
                 edge_count: on.list_count.view(),
                 listed: repeats.then(|| on.listed.view()),
-                state: on.state.view(),
-                stride: case.mesh.slots() as u32,
-                illegal: on.out.view(),
+                claims: on.claims.view(),
+                illegal: on.out.view().cast(),
                 words: on.words.view(),
                 report: on.report.view(),
                 limit: list.len() as u32,
@@ -198,8 +197,8 @@ fn test_edges() {
             };
             run::<TestEdges>(&mut gpu, EXACT, 3, &arguments);
             let count = on.word(&mut gpu, 4) as usize;
-            assert_eq!(on.sorted(&mut gpu, &on.out, 0, count), sorted(expected.clone()), "{}", case.name);
-            assert_eq!(gpu.fetch(on.state.view()), state_of(&scratch, 1), "{}", case.name);
+            assert_eq!(on.sorted(&mut gpu, &on.out, count), sorted(expected.clone()), "{}", case.name);
+            assert!(on.notes(&mut gpu, &scratch), "{}", case.name);
             let rounds = u64::from(!list.is_empty());
             assert_eq!(on.report(&mut gpu), [rounds, 0, tests], "{}", case.name);
             assert_eq!(on.word(&mut gpu, LISTED), list.len() as u32);
@@ -213,16 +212,15 @@ fn flip_edges() {
     for case in &mut cases() {
         let (illegal, _) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, false, &mut case.scratch);
         let words = [(4, illegal.len() as u32), (LISTED, 1), (ANY_TESTED, 1)];
-        let on = Uploaded::new(&mut gpu, case, 1, &illegal, &words);
+        let on = Uploaded::new(&mut gpu, case, illegal.as_flattened(), &words);
         let bits = vec![u32::MAX; 3 * case.mesh.slots() / 32 + 1];
         gpu.engine.upload(on.listed.view(), &bits).unwrap();
         let tested = gpu.buffer(&[3_u32, 9]);
         let arguments = FlipEdgesArgs {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
-            state: on.state.view(),
-            stride: case.mesh.slots() as u32,
-            illegal: on.list.view(),
+            claims: on.claims.view(),
+            illegal: on.list.view().cast(),
             edges: Some(tested.view()),
             edge_count: Some(on.list_count.view()),
             listed: Some(on.listed.view()),
@@ -233,16 +231,16 @@ fn flip_edges() {
             parity: 1,
         };
         // Too few: then there is nothing to do.
-        let before = gpu.fetch(on.state.view());
         run::<FlipEdges>(&mut gpu, &[], 2, &arguments);
-        assert_eq!((on.word(&mut gpu, TAKEN), gpu.fetch(on.state.view())), (0, before), "{}", case.name);
+        assert_eq!(on.word(&mut gpu, TAKEN), 0, "{}", case.name);
+        assert!(on.notes(&mut gpu, &case.scratch), "{}", case.name);
         assert_eq!(on.word(&mut gpu, 4), illegal.len() as u32);
         run::<FlipEdges>(&mut gpu, &[], 2, &FlipEdgesArgs { least: illegal.len() as u32, ..arguments });
         let mut expected = illegal.clone();
         let flips = kernels::flip_edges(&mut case.mesh, &mut case.scratch, &mut expected);
-        assert_eq!(gpu.fetch(on.list.view())[..expected.len()], expected, "{}", case.name);
+        assert_eq!(gpu.fetch(on.list.view().cast::<[u32; 2]>())[..expected.len()], expected, "{}", case.name);
         assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
-        assert_eq!(gpu.fetch(on.state.view()), state_of(&case.scratch, 1), "{}", case.name);
+        assert!(on.notes(&mut gpu, &case.scratch), "{}", case.name);
         assert_eq!(on.report(&mut gpu), [0, flips, 0], "{}", case.name);
         let words = gpu.fetch(on.words.view());
         assert_eq!([words[TAKEN], words[ROUND_NOW]], [expected.len() as u32, case.scratch.round]);
@@ -259,21 +257,23 @@ fn relink_edges() {
         let (mut illegal, _) = kernels::test_edges(&case.mesh, &case.positions, &case.edges, false, &mut case.scratch);
         kernels::flip_edges(&mut case.mesh, &mut case.scratch, &mut illegal);
         let count = illegal.len() as u32;
-        let on =
-            Uploaded::new(&mut gpu, case, 0, &illegal, &[(0, count), (TAKEN, count), (ROUND_NOW, case.scratch.round)]);
+        let on = Uploaded::new(
+            &mut gpu,
+            case,
+            illegal.as_flattened(),
+            &[(0, count), (TAKEN, count), (ROUND_NOW, case.scratch.round)],
+        );
         let arguments = RelinkEdgesArgs {
             links: on.mesh.twins(),
-            state: on.state.view(),
-            stride: case.mesh.slots() as u32,
-            illegal: on.list.view(),
+            illegal: on.list.view().cast(),
             words: on.words.view(),
             parity: 0,
         };
         run::<RelinkEdges>(&mut gpu, &[], 2, &arguments);
-        kernels::relink_edges(&mut case.mesh, &mut case.scratch, &illegal);
-        assert!(illegal.iter().all(|h| h & WON == 0) || case.mesh.check().is_ok(), "{}", case.name);
+        kernels::relink_edges(&mut case.mesh, &case.scratch, &illegal);
+        assert!(illegal.iter().all(|[h, _]| h & WON == 0) || case.mesh.check().is_ok(), "{}", case.name);
         assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
-        assert_eq!(gpu.fetch(on.state.view()), state_of(&case.scratch, 0), "{}", case.name);
+        assert!(on.notes(&mut gpu, &case.scratch), "{}", case.name);
         assert!(case.scratch.claims.iter().all(|&claim| claim == NONE), "{}", case.name);
         assert_eq!([on.word(&mut gpu, 0), on.word(&mut gpu, ROUND)], [0, case.scratch.round]);
     }
@@ -290,15 +290,14 @@ fn advance_edges() {
         let count = illegal.len() as u32;
         let parity = turn as u32 % 2;
         let words = [(4 * parity as usize, count), (TAKEN, count), (ROUND_NOW, case.scratch.round)];
-        let on = Uploaded::new(&mut gpu, case, parity as usize, &illegal, &words);
+        let on = Uploaded::new(&mut gpu, case, illegal.as_flattened(), &words);
         let arguments = AdvanceEdgesArgs {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
             positions: on.mesh.positions().cast(),
-            state: on.state.view(),
-            stride: case.mesh.slots() as u32,
-            illegal: on.list.view(),
-            next_illegal: on.out.view(),
+            claims: on.claims.view(),
+            illegal: on.list.view().cast(),
+            next_illegal: on.out.view().cast(),
             words: on.words.view(),
             report: on.report.view(),
             scope: u32::from(hull_alone),
@@ -308,8 +307,8 @@ fn advance_edges() {
         let (next, tests) =
             kernels::advance_edges(&mut case.mesh, &case.positions, &illegal, hull_alone, &mut case.scratch);
         assert!(on.mesh.download(&mut gpu.engine).unwrap() == case.mesh, "{}", case.name);
-        assert_eq!(gpu.fetch(on.state.view()), state_of(&case.scratch, 1 - parity as usize), "{}", case.name);
-        assert_eq!(on.sorted(&mut gpu, &on.out, 0, next.len()), sorted(next.clone()), "{}", case.name);
+        assert!(on.notes(&mut gpu, &case.scratch), "{}", case.name);
+        assert_eq!(on.sorted(&mut gpu, &on.out, next.len()), sorted(next.clone()), "{}", case.name);
         assert_eq!(on.report(&mut gpu), [u64::from(count != 0), 0, tests], "{}", case.name);
         let counts = [parity, 1 - parity].map(|parity| on.word(&mut gpu, 4 * parity as usize));
         assert_eq!(counts, [0, next.len() as u32], "{}", case.name);
@@ -324,16 +323,15 @@ fn flip_tail() {
         for (turn, [least, most]) in [[usize::MAX, 3], [20, 100], [usize::MAX, 0], [9, 2]].into_iter().enumerate() {
             let parity = turn % 2;
             let words = [(4 * parity, illegal.len() as u32), (PENDING, 99)];
-            let on = Uploaded::new(&mut gpu, case, parity, &illegal, &words);
+            let on = Uploaded::new(&mut gpu, case, illegal.as_flattened(), &words);
             let lists = [[&on.list, &on.out], [&on.out, &on.list]][parity];
             let arguments = FlipTailArgs {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
-                state: on.state.view(),
-                stride: case.mesh.slots() as u32,
-                illegal_0: lists[0].view(),
-                illegal_1: lists[1].view(),
+                claims: on.claims.view(),
+                illegal_0: lists[0].view().cast(),
+                illegal_1: lists[1].view().cast(),
                 words: on.words.view(),
                 report: on.report.view(),
                 scope: 0,
@@ -352,10 +350,10 @@ fn flip_tail() {
             let ended = (parity + report.rounds as usize) % 2;
             if !left.is_empty() {
                 assert_eq!(on.word(&mut gpu, 4 * ended), left.len() as u32, "{}", case.name);
-                assert_eq!(on.sorted(&mut gpu, lists[ended], 0, left.len()), sorted(left.clone()), "{}", case.name);
+                assert_eq!(on.sorted(&mut gpu, lists[ended], left.len()), sorted(left.clone()), "{}", case.name);
             }
             assert_eq!(on.word(&mut gpu, 4 * (1 - ended)), 0, "{}", case.name);
-            assert_eq!(gpu.fetch(on.state.view()), state_of(&case.scratch, ended), "{}", case.name);
+            assert!(on.notes(&mut gpu, &case.scratch), "{}", case.name);
             illegal = left;
         }
     }

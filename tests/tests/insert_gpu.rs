@@ -58,6 +58,7 @@ fn assert_inserted(gpu: &mut Gpu, stages: &Stages, name: &str, case: &Case, expe
     let input =
         Input { points: points.view(), starts: starts.view(), count: None, sites: sites.view(), freed: freed.view() };
     let mut recording = gpu.recording();
+    stages.flips.record_start(&mut recording, &flip_buffers);
     let read = stages.insert.record(&mut recording, &mesh, (&stages.flips, &flip_buffers), &buffers, input).unwrap();
     let counts = read.result(&gpu.run(&recording)).unwrap_or_else(|error| panic!("{name}: {error}"));
     let on_a_line = expected.mesh.finite().next().is_none();
@@ -125,6 +126,7 @@ fn a_recording_serves_again_and_buffers_for_less_are_refused() {
     let input = Input { points, starts, count: None, sites, freed };
     let flips = (&stages.flips, &flip_buffers);
     let mut recording = gpu.recording();
+    stages.flips.record_start(&mut recording, &flip_buffers);
     let read = stages.insert.record(&mut recording, &mesh, flips, &buffers, input).unwrap();
     for _ in 0..3 {
         mesh.upload(&mut gpu.engine, &case.shifted.mesh, &case.positions).unwrap();
@@ -159,6 +161,7 @@ fn a_mesh_that_overlaps_does_no_harm() {
     let input =
         Input { points: points.view(), starts: starts.view(), count: None, sites: sites.view(), freed: freed.view() };
     let mut recording = gpu.recording();
+    stages.flips.record_start(&mut recording, &flip_buffers);
     let read = stages.insert.record(&mut recording, &mesh, (&stages.flips, &flip_buffers), &buffers, input).unwrap();
     let report = gpu.run(&recording);
     let known =

@@ -7,8 +7,8 @@ define_kernel! {
     /// triangles where the hull turns right or folds back: the lowest slot of each; and the lowest corners of the hull, counted.
     CheckTriangles(CheckTrianglesArgs) = "check_triangles" and "check_triangles.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: both minima: View<'a, u32>,
         32: both broken: View<'a, u32>,
@@ -25,7 +25,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "fa79ae7146eae6f205cfe122c6d0132a2ab4f5dafb722a3ef605e1ba6abd6c18";
+    source "6da6afc764013b54b4f88f494dc635851c6c84db3a0ce8f9285c4e6455b4a6b8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -45,7 +45,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "d22a67f8d4f44db086bb156e79e53498479944f4b6edad5618b4e5e271408d88";
+    source "a48f36e320d162e729fff4502fabd13ca3ebf6f37f2216688dd6321139d2e660";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -54,7 +54,7 @@ define_kernel! {
     /// place in the list (the rest), in the order of arrival. NONE for every other slot. Ghost triangles are counted.
     CountTriangles(CountTrianglesArgs) = "count_triangles";
     buffers {
-        0: read triangles: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
         8: read names: View<'a, u32>,
         16: both counts: View<'a, u32>,
         24: written places: View<'a, u32>,
@@ -68,8 +68,8 @@ define_kernel! {
     argument_bytes 56;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "62508e5bad2e90a35763f8815ba7f98a633240edd11765cab8ab0593ebb67c7e";
+    capabilities ["GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "523ba5c2705346f2357242665fc4b198234e31c8d0f1b8df7d55a56dfce587a6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -88,7 +88,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "7aa38d41dfaf8b3babe8cef837839d0373a12d2b253433b6ecf9772269b71907";
+    source "5814abf3cb429e15660ece77f5be50f90ddc9b5cde3fea052454ffd96e8f3ece";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -111,7 +111,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "08dc1475ae25068941e9d23c66cbef582cc9af922d9bec3407b6fca457d3cf48";
+    source "0ad91a9b6a9370d26db420c9cb077bdc1cbd461c2c2f4223803b7f175348d90f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -129,7 +129,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "adc2639abaf56b2bb81d29aa58f023501358ebeb2a5a0142e88eb41329693b89";
+    source "bd40c8b86c1e92003af9c4ffccf920dcf674c6e9dec6932b98493d558044604e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -149,7 +149,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "6dfc66751e8b7219011c6132a92bab58d35377759d37cae5f73ac51677aab48f";
+    source "4489f066204f1c628d61ef1cadb59147209dffff1a7bb968dd0169904eebfab5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -171,7 +171,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "a0852e5ffcbe463232de45a5488684da4b32f78a7fb6dfc731eeb97211ce7dc3";
+    source "f09614a6f99fdaeee9bd5278468aae04224a9936f20a1689337b2bfaa0cacd76";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -192,7 +192,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "ae3d11835daf6a70893b727187c319538be3b45598a900af37d0cf6147c00f49";
+    source "0a5b45ad3425d834dde2710d034d0d2e1638041134af57fc78df1401a379cc91";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -212,7 +212,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "6b03dfce5bd5e67de193d36e727ccebf147c1cdf058cc225bc3d74ee3e157ae8";
+    source "65c1915919b6544deb08da01e99e718adbe8fce3a2b427bc472cb0fffc0c3801";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -220,7 +220,7 @@ define_kernel! {
     /// The list of each vertex: the half-edge opposite it in each triangle, and the name of the corner after it.
     ListTriangles(ListTrianglesArgs) = "list_triangles";
     buffers {
-        0: read triangles: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
         8: read names: View<'a, u32>,
         16: read places: View<'a, u32>,
         24: read starts: View<'a, u32>,
@@ -234,8 +234,8 @@ define_kernel! {
     argument_bytes 60;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "c09c01d8af6b8199438eea42636a56e4c97958ef66b6d48a13ed71bfa3bcf07b";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "689425d4d4720483f518559ef3343feaa06d9e481e36887c063be4ee0b7fe631";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -258,7 +258,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "a5b92f52e02f24fd9c9b955450dc2b8e75573b81101670e37220b1a4b3b69dc0";
+    source "a1e493d31fb4edbc62fd379ea1de0ea948120d70c3546dfb9e76b3f90e3d6c16";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -279,7 +279,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ab0da1ea52995e1ea5fc204f86463e25b734664ff1544ea54d13ce53a6d6a530";
+    source "f844474ed59300149704729a57e3d8d5ef59930d928b3ff3e0a012e2a65398c7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -305,7 +305,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "9384dbeb30a885f9cbd78786fac85fd0e8e1f325d71196261114ce9e23345d69";
+    source "2aed65c8cf0285268b939e1f01625e81a7d746d05e972906572689c749c7656a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -353,7 +353,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "e81d96314bd0e8ab9dd642119b116e4f32cd24bc8670fe32d3820a5a41834593";
+    source "a80465e0f7dbc5c1b64eda8373a207e0fb9815c302d57ef59f0b3ff7f57917df";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -372,7 +372,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "de2f4b89aaf2d431104166b436bb0a16d844bb3bca6f51ac64a8721688366767";
+    source "ee844c227b81389331c6f2bbf77495db5b12fa69e7df5508d1119620cdfe9cf5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -382,8 +382,8 @@ define_kernel! {
     /// one place goes together: memory takes so many pieces a second, however short they are.
     WriteTriangles(WriteTrianglesArgs) = "write_triangles";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read names: View<'a, u32>,
         24: read list: View<'a, u32>,
         32: read places: View<'a, u32>,
@@ -400,7 +400,7 @@ define_kernel! {
     argument_bytes 92;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "c4456477b163871f4aeca42b19eeb723e4a856ea7876ac5e3bda52d797d030d4";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "6a0be9bcbfd33c3ee17b4eff6676d800847aa07b41d3c6d77f6ec699878b5ff8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

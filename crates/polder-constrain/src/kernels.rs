@@ -17,7 +17,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "e425285892cf3be07af40e6fb282efe0c4fb0f148a553b4586b3213a8b1694d3";
+    source "43b58a3e1b2d5696c55e1b0c18151fa193066f7af52e767f0d7c50b5a5e4e704";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -26,8 +26,8 @@ define_kernel! {
     /// back, and looks at the triangles around flips, which claim what they need for the next round.
     AdvancePairs(AdvancePairsArgs) = "advance_pairs" and "advance_pairs.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
         32: both pairs: View<'a, [u32; 2]>,
@@ -41,7 +41,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "9f8ae8e9bc2e5d8d4795c2fd98b4d4b61c291a346bbda9f0bee10e971f8e2ba1";
+    source "26d504af40796c00c24866dc99d95a3d2f213733ddf474ec78ca56a0bfc80e94";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -69,7 +69,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "a16f2cc21eb77609517ff135d1deab06fa6f74ce4056f34395dad52000224d78";
+    source "d9426dd299f3fa948359d3dd6539fc8065afc22f42ea7e8cfa7ad8da7f216a37";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -79,8 +79,8 @@ define_kernel! {
     /// are worked on together in all rounds after. Also sums up what pieces of walks crossed.
     ConfigurePairs(ConfigurePairsArgs) = "configure_pairs" and "configure_pairs.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
         32: read pieces: View<'a, [u32; 4]>,
@@ -99,7 +99,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "a81c5ab445780c806941482b2e4ab90dfd4d0f5182bc99284fb523040eb82fc7";
+    source "22c7488ab47de0ed9565db3d9afdca7c090878fd09cbf0a3f80d6ba545960557";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -125,7 +125,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "7455b2fe70fcd8d479fe372b18ad712e629dbc5f205a18faf3f2b86978391f77";
+    source "8756afa970e443a2ab73e8e415840e78fa11f926dde6068f8d95642a67d489e0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -135,8 +135,8 @@ define_kernel! {
     /// has become an edge becomes a constrained one.
     DepartWalks(DepartWalksArgs) = "depart_walks" and "depart_walks.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read sub_constraints: View<'a, [u32; 2]>,
         32: read spokes: View<'a, u32>,
@@ -157,7 +157,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c3302ac6ecb6271ed08a78f79b8bf906cfc3a798c6bdd8c578fb854459eca05a";
+    source "07383cecd3022fd2f03c860b97886f3b0b413decec75ddc3cc58dfa9e61d30a6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -170,8 +170,8 @@ define_kernel! {
     /// What lies farther off than half a piece does not serve: pieces would begin out of order, and some walk to the end.
     FindBeginnings(FindBeginningsArgs) = "find_beginnings" and "find_beginnings.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read ends: View<'a, [u32; 2]>,
         32: read spokes: View<'a, u32>,
@@ -193,7 +193,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "dc6c194d3ab2fc2c3af5f5210dd0c88f0f8e6d3e099219b2c5696c56a36314e6";
+    source "460252788438896e1393256e34ed30b25501e795d192c66257a0e4c2a8ed7ab6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -202,8 +202,8 @@ define_kernel! {
     /// fewer edges, of two like ones at the first.
     FindEdges(FindEdgesArgs) = "find_edges";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read ends: View<'a, [u32; 2]>,
         24: read spokes: View<'a, u32>,
         32: read degrees: View<'a, u32>,
@@ -218,8 +218,8 @@ define_kernel! {
     argument_bytes 76;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e7e21b78cb6e95447e7cd935699c87f3924ef87eb684ca908895bef69d037b6f";
+    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "52571e4e91f5a31b24bfa9c6b1a81d4229632c47f0e9f31f55349159fa6df21d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -230,7 +230,7 @@ define_kernel! {
     /// Counting in a table of the workgroup first, a third of the accesses to memory, took a fifth longer.
     FindSpokes(FindSpokesArgs) = "find_spokes";
     buffers {
-        0: read triangles: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
         8: read slots: View<'a, u32>,
         16: written spokes: View<'a, u32>,
         24: both degrees: View<'a, u32>,
@@ -242,8 +242,8 @@ define_kernel! {
     argument_bytes 40;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "ce084f94151930484e396529f65b21b263b54abab5b8f5af618d588049ce1097";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "4cc8cc211854fb3c81a529fd753914c01ca88d06b3c70d747b30e5bccbe63aa4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -252,8 +252,8 @@ define_kernel! {
     /// before the round, until they are renewed.
     FlipPairs(FlipPairsArgs) = "flip_pairs";
     buffers {
-        0: both triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: both state: View<'a, u32>,
         24: both pairs: View<'a, [u32; 2]>,
         32: both spokes: View<'a, u32>,
@@ -267,8 +267,8 @@ define_kernel! {
     argument_bytes 64;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "026af5d7c9eb7c74198b93bb37e769b531451432e46bab08796a4b3826fdaa7e";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "622bd0fc8c10f766c4530f271814a6c066b6df47b196903569878e18575c4388";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -293,7 +293,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "9424e4f785ca554700816caff5dcfdc2dd1f1dca860a2f5873d9a1c270e662fb";
+    source "b64b2d534efc73028195cdb7eb80b7b521b2f8a5a108ec14c648deeba09507e0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -302,8 +302,8 @@ define_kernel! {
     /// edges; those that are become constrained ones. It also counts how many end at each vertex.
     ListWalkers(ListWalkersArgs) = "list_walkers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read sub_constraints: View<'a, [u32; 2]>,
         24: maybe_read counter: Option<View<'a, u32>>,
         32: read spokes: View<'a, u32>,
@@ -321,8 +321,8 @@ define_kernel! {
     argument_bytes 92;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "a827ae8d145c85070b80fac206a4b94c861174d4298dfbaa36fb0e3275924f68";
+    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "b8cdfda4182a488b124172d9663d9d02aa4323c0fcd977d5393df91c73da2a4b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -332,8 +332,8 @@ define_kernel! {
     /// hub and does not own the triangle there does not walk.
     MarkChains(MarkChainsArgs) = "mark_chains" and "mark_chains.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read sub_constraints: View<'a, [u32; 2]>,
         32: read walkers: View<'a, u32>,
@@ -354,7 +354,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "eca29459b804f5e04c47a762d5c12e430c966f6a79542a465bd2d12fbda3dc15";
+    source "355e5a79cc88be0035196927f3419dd1464907606270660ae7f454051c0e9172";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -403,8 +403,8 @@ define_kernel! {
     /// next outer round, or has the inner rounds go on.
     PairTail(PairTailArgs) = "pair_tail" and "pair_tail.integers";
     buffers {
-        0: both triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
         32: both pairs: View<'a, [u32; 2]>,
@@ -428,7 +428,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "0020ed2331bcbf476b67c8e05b8bc74c49bce4b0183f90d31cf685a099b23fee";
+    source "54d5cad681bf7c780f34fa1cc04ed441f28824a2f90069ec9cf84ffe2178fdd0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -454,7 +454,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "c55dca96f17ff8cdedf4d123b21fa8697fbed6c6524cb9fbd89b51a67dbcf63f";
+    source "44ed37d990ec7e2311e82e32b0e8e5527c342eb78c5c49bade8d3508c7808d52";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -478,7 +478,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "5a457b0754ebf963120301773b0f1440b1e0e611dec279efc4a66cbe5dc181d0";
+    source "e1dcfbb5508839d596de2733ed3b697e7c9537e2dd92f3183f944e51336da772";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -508,7 +508,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8636dbccc83ca26a3fbc4b48eb7eddf16d7a72c9174185b43fbbe1a3c453cee8";
+    source "5174fcc00417951d890c81d9b7fc83fc62a295d3b5bf3cac017609ccfa062ece";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -533,7 +533,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "cc81cc05955f2a90fe32bd7251c9e5df58e733bfec6fcb703854fba95c019c26";
+    source "b5e1e73572898c384547f33333330ce91da3338f69fd963be5ee85b715806ae1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -559,7 +559,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "41792052b37d892ef73ec8ee9ff62fded6d38d55f228c0fb65dbf99f85fd015d";
+    source "70a26b61bb376b93be4bc063d8d74070c75960cf3767d71c346b6b11234922d8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -579,7 +579,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "71fc8101759d4411bbb066d2d211239ae7779542a2c4e418bf9930edf6d861b9";
+    source "50b9b7d3e836bda5ec94019ecacbc1599d7a8bda692dde00270ece41bc5ad61c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -587,8 +587,8 @@ define_kernel! {
     /// The constraints walk the mesh, and meet the vertices at which they are cut.
     WalkConstraints(WalkConstraintsArgs) = "walk_constraints" and "walk_constraints.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read ends: View<'a, [u32; 2]>,
         32: read spokes: View<'a, u32>,
@@ -612,7 +612,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "4bb452430c73c002b6654a1a6b99c8e79d6bf6089a60e8efe81bf8dccd1a952b";
+    source "9afc0a215bc5ba24bc45f78fc8cf6ce0ff342a87c613cac2355bd21eeb5255b8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -631,6 +631,6 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "51257a59ec6e69efbcfc2939e01bd373b3f41793a6559c1ce3a5fd636c423cfc";
+    source "d8cde1dd1d09bdba5fc6c7028b4987377d0e80303a67c17dc3f4a5e1f5089d66";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

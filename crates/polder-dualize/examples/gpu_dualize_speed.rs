@@ -2,7 +2,7 @@
 //! `gpu_dualize_speed [points]...`; `POLDER_DEVICE` names the device.
 
 use polder_dualize::DVec2;
-use polder_dualize::gpu::dualize::{Input, Output, Stage};
+use polder_dualize::gpu::dualize::{Input, Stage};
 use polder_dualize::reference::dual;
 use polder_flip::gpu::Mesh;
 use polder_voronoi::{Diagram, GridMapping, Options, Sites};
@@ -52,8 +52,7 @@ fn measure(device: &Device, count: usize) -> Result<(), Box<dyn std::error::Erro
     }
     let mut recording = Recording::new(device);
     let input = Input { size, colors: grid.colors(), pixels: grid.pixels(), sites: grid.site_count()? };
-    let output = Output { triangles: mesh.triangles(), links: mesh.links(), slots: mesh.slots() };
-    let read = stage.record(&mut recording, input, output, &buffers)?;
+    let read = stage.record(&mut recording, input, &mesh, &buffers)?;
 
     let counts = read.result(&engine.run(&recording, &RunOptions::default())?)?;
     println!("{size:?} pixels, {count} points, {} bytes of scratch: {counts:?}", Stage::estimate(size).bytes());
@@ -91,7 +90,7 @@ fn measure(device: &Device, count: usize) -> Result<(), Box<dyn std::error::Erro
         println!("    {kernel:<20} {:>9.4} ms", median(times));
     }
     // Read: colors, sites' pixels; written: triangles and links; bits and slots of corners once each way and back.
-    let floor = 4 * diagram.colors.len() * 2 + 4 * sites.count + 24 * counts.triangles as usize;
+    let floor = 4 * diagram.colors.len() * 2 + 4 * sites.count + 32 * counts.triangles as usize;
     println!("  {:.1} MB have to be moved, colors read twice", floor as f64 / 1e6);
     Ok(())
 }

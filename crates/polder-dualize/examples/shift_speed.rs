@@ -65,8 +65,7 @@ fn measure(device: &Device, points: &[DVec2], check: bool) -> Result<(), Failed>
     voronoi.record(&mut recording, &mapping, uploaded.view(), &diagram)?;
     let (size, colors, pixels) = (mapping.size(), diagram.colors(), diagram.pixels());
     let input = dualize::Input { size, colors, pixels, sites };
-    let output = dualize::Output { triangles: mesh.triangles(), links: mesh.links(), slots: mesh.slots() };
-    let read = dual.record(&mut recording, input, output, &dual_buffers)?;
+    let read = dual.record(&mut recording, input, &mesh, &dual_buffers)?;
     read.result(&engine.run(&recording, &RunOptions::default())?)?;
     let order = engine.download_vec(diagram.order())?;
     let all_pixels = engine.download_vec(pixels)?;
@@ -75,7 +74,7 @@ fn measure(device: &Device, points: &[DVec2], check: bool) -> Result<(), Failed>
     let flip = polder_flip::gpu::Stage::new(device)?;
     let (flip_buffers, tally) = (flip.buffers(mesh.capacity())?, Tally::new(device)?);
     let mut before = Recording::new(device);
-    dual.record(&mut before, input, output, &dual_buffers)?;
+    dual.record(&mut before, input, &mesh, &dual_buffers)?;
     flip.record_start(&mut before, &flip_buffers);
 
     let stage = shift::Stage::new(device, Arithmetic::of(device)?)?;

@@ -47,7 +47,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot",
         "GroupNonUniformShuffleRelative", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c7ca29b87b567bd22babc0fce6fefb20dce7f1b55b7be530d57bc6c409e7af21";
+    source "4f03f119854a999ff361fd295a42a88326c91b4c36c8e8d90f26339fda4d67d9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -63,8 +63,8 @@ define_kernel! {
         8: read pixels: View<'a, u32>,
         16: read vertices: View<'a, [u32; 2]>,
         24: read first: View<'a, u32>,
-        32: read triangles: View<'a, u32>,
-        40: written links: View<'a, u32>,
+        32: far_read triangles: View<'a, u32>,
+        40: far_written links: View<'a, u32>,
         48: both lost: View<'a, u32>,
         56: read far: View<'a, [u32; 2]>,
         64: read far_count: View<'a, u32>,
@@ -77,8 +77,8 @@ define_kernel! {
     argument_bytes 84;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "a9b859ea670810881d199f92bee713cd7110be180ad31ea3aa48531cff0554f4";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "697723088944400ade86cee709a0d24333bb091c961ddd3c944fce9cef6534e9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -94,8 +94,8 @@ define_kernel! {
         16: read vertices: View<'a, [u32; 2]>,
         24: read first: View<'a, u32>,
         32: read slots: View<'a, u32>,
-        40: written triangles: View<'a, u32>,
-        48: written links: View<'a, u32>,
+        40: far_written triangles: View<'a, u32>,
+        48: far_written links: View<'a, u32>,
         56: both lost: View<'a, u32>,
         64: both folded: View<'a, u32>,
         72: written far: View<'a, [u32; 2]>,
@@ -109,8 +109,8 @@ define_kernel! {
     argument_bytes 100;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "NEAR"(1) = 3];
-    capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "2e1223008e07ef2f147be39b6e38a04c9816dd0f133b14092958adfd03479fe4";
+    capabilities ["GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "8c235c4ff7b2b8a6c808951dea9266d3a1b019d28aeb4342e33541869ee10bce";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -129,7 +129,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4c358cba134f815947303a031965408ec59f1bb9be3cc0d248612a8e3ca84c38";
+    source "8d5aecf16039f09cb7979c55a6b902541916000d0c8c369ab2773853ce6c50f7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -138,7 +138,7 @@ define_kernel! {
     /// duplicate yet.
     InsertBegin(InsertBeginArgs) = "insert_begin";
     buffers {
-        0: read triangles: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
         8: read slots: View<'a, u32>,
         16: written half_edges: View<'a, u32>,
         24: written vertex_of: View<'a, u32>,
@@ -152,8 +152,8 @@ define_kernel! {
     argument_bytes 56;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "0a56c227ec428a47b849a83493818fa4ae9c492ab2d3d15a60a6b73c7450709c";
+    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "3fd5313b16e8974d2e52081d2b24045009c1fab779f740ec6b76e70d21260bf8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -163,7 +163,7 @@ define_kernel! {
     /// an edge the second of its triangles takes the place of its score, which has served: links are about to change.
     InsertClaim(InsertClaimArgs) = "insert_claim";
     buffers {
-        0: read links: View<'a, u32>,
+        0: far_read links: View<'a, u32>,
         8: read waiting: View<'a, [u32; 2]>,
         16: both places: View<'a, u32>,
         24: both claims: View<'a, u32>,
@@ -175,8 +175,8 @@ define_kernel! {
     argument_bytes 44;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "1d4c9ddfe3bd4289c7145cc069e812e6f2b294cbc3c186e00307076a9ac32cba";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "f6e5ad42908a577e6e38ab54083934e1b29c733a1821f5276b725b5671003cad";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -186,8 +186,8 @@ define_kernel! {
     /// workgroup the two of all. The second pass lays the chain of both if the mesh is empty.
     InsertEnds(InsertEndsArgs) = "insert_ends";
     buffers {
-        0: both triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read half_edges: View<'a, u32>,
         32: both ends: View<'a, u32>,
@@ -201,7 +201,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4247e5a07d948321b3548d4527763ef9142587804c34dc6c53c7185bee405ea7";
+    source "0a4520194ac69e177c0e282b45c28bd05888aa35f1ee15b8a3d18030ba660d80";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -209,26 +209,25 @@ define_kernel! {
     /// Insertion, 3 of 4 of a round: points that got all they claimed split it, the others go on the next list.
     ///
     /// Links between the parts are new; outer edges keep the name of the other side that it had before, until `insert_relink`
-    /// renews it. For each point `rounds` says in which round it was inserted.
+    /// renews it.
     InsertGraft(InsertGraftArgs) = "insert_graft";
     buffers {
-        0: both triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: both waiting: View<'a, [u32; 2]>,
         24: read freed: View<'a, [u32; 2]>,
         32: both places: View<'a, u32>,
         40: both claims: View<'a, u32>,
-        48: written rounds: View<'a, u32>,
-        56: both words: View<'a, u32>,
+        48: both words: View<'a, u32>,
     }
     values {
-        64: limit: u32,
+        56: limit: u32,
     }
-    argument_bytes 68;
+    argument_bytes 60;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "09d2330cf1f0222a81d59461479205b8ae098722fa2f2bbe68856e86bb9ada84";
+    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "90e4802bab51fa66d120d479640239e7ba9bd3dd10cdd95229d102bbc5b071c0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -238,8 +237,8 @@ define_kernel! {
     /// ghost triangle goes in between.
     InsertJoin(InsertJoinArgs) = "insert_join" and "insert_join.integers";
     buffers {
-        0: both triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read slots: View<'a, u32>,
         32: read freed: View<'a, [u32; 2]>,
@@ -250,7 +249,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c33a27a2ce12ca5a8fab00e8fe4fa186976d2da76502810a8cfb70bcf9d10332";
+    source "af989d06f4a429ccd581af524dc1c428b40b4982232f159c90ea1061ba709e72";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -268,8 +267,8 @@ define_kernel! {
     /// - BEYOND_HULL: where the walk starts from a ghost triangle, its hull edge.
     InsertLocate(InsertLocateArgs) = "insert_locate" and "insert_locate.integers";
     buffers {
-        0: both triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: read waiting: View<'a, [u32; 2]>,
         32: read freed: View<'a, [u32; 2]>,
@@ -286,7 +285,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "fe92266bb565e4cb41f6068d8080ed3ef4a8649e592d1aea073bb26d28606a5f";
+    source "dee92d69735dc7874d15b3c19f870de4b4374e234eeb7f4fad965ca9ff545dd5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -296,29 +295,25 @@ define_kernel! {
     /// workgroup turns to the next round.
     InsertRelink(InsertRelinkArgs) = "insert_relink";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
-        16: read waiting: View<'a, [u32; 2]>,
-        24: read freed: View<'a, [u32; 2]>,
-        32: read places: View<'a, u32>,
-        40: both claims: View<'a, u32>,
-        48: read rounds: View<'a, u32>,
-        56: written edges: View<'a, u32>,
-        64: both edge_count: View<'a, u32>,
-        72: written hull_edges: View<'a, u32>,
-        80: both hull_count: View<'a, u32>,
-        88: both words: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
+        16: read places: View<'a, u32>,
+        24: both claims: View<'a, u32>,
+        32: written edges: View<'a, u32>,
+        40: both edge_count: View<'a, u32>,
+        48: written hull_edges: View<'a, u32>,
+        56: both hull_count: View<'a, u32>,
+        64: both words: View<'a, u32>,
     }
     values {
-        96: limit: u32,
-        100: edge_limit: u32,
-        104: hull_limit: u32,
+        72: edge_limit: u32,
+        76: hull_limit: u32,
     }
-    argument_bytes 108;
+    argument_bytes 80;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "b5acdeb17ffd151df209d97c3711c2b5206d8b6fa70960857d96eebd2dad5c91";
+    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "5822ae2a9a9c63bd994bd22cd7ff0dcced4948034da54088147710ad51934496";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -334,7 +329,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "b6bb47260fcd343c3ca0804b5236153f7bbc6f0192a2820ce731df124830be7a";
+    source "529a36009f8a30850714dd01c890fa511af648f55d3123ef2b361bc6a98c6597";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -342,7 +337,7 @@ define_kernel! {
     /// Insertion, before the rounds, 5 of 5: where the walk to each point starts, and the words of the first round.
     InsertWait(InsertWaitArgs) = "insert_wait";
     buffers {
-        0: read triangles: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
         8: read half_edges: View<'a, u32>,
         16: read points: View<'a, u32>,
         24: read starts: View<'a, u32>,
@@ -358,8 +353,8 @@ define_kernel! {
     argument_bytes 72;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "e98e9de0556ceb7c2a447633ac9103fb9bcb6506a0b32732ed97814a26ac8f8a";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "b320671aadb128a23b07fd75aec3cacfc1e54b2fcb2d08dcdc4c0a0e35e78a0f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -367,8 +362,8 @@ define_kernel! {
     /// Pin: puts the sites that were pinned in the last round on their pixel centers, and tests the triangles around them.
     PinStars(PinStarsArgs) = "pin_stars" and "pin_stars.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: both positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
         32: both pinned: View<'a, u32>,
@@ -391,7 +386,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "a6afdc3f9cf00de5fe1c9d4c4a79a1cdf8c59a4348163d5753f2850e00206a71";
+    source "5f7da7765aecb3930f6134a95cdc5b92123cf273b7693e14a11d78a4db999c89";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -400,7 +395,7 @@ define_kernel! {
     /// edge that leads to the ghost.
     PinTriangles(PinTrianglesArgs) = "pin_triangles" and "pin_triangles.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
         8: read positions: View<'a, [u32; 4]>,
         16: both state: View<'a, u32>,
         24: both pinned: View<'a, u32>,
@@ -418,7 +413,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "adf9b315bbeca1850cce846503afbf564805c6ce8823b18cb7fc9da60d26ae94";
+    source "7b6b5e5761337f50b34f0b64b263947c04a93b7166b531ea6f7b7913b5e35c4f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -464,7 +459,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "fbbe4a8f05372b9f4da2015fd1115f4dd3266c412e02d8309cf463b1351ecdaf";
+    source "15cd1293add487d0484de5cfcf3c7873d2c3e9721880c827d03badf737a602c6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -486,7 +481,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "11066f5169aedc4cf0d705590efee71076d672155e57025656fd2bd9d366f52f";
+    source "c4af3d6c6a66014e981d708b41a2b84f68e229d52e3e454c01e7f94c0d779ee4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -500,8 +495,8 @@ define_kernel! {
     /// than shared memory are cut step by step in the mesh: `scan` of the reference.
     TakeoutCut(TakeoutCutArgs) = "takeout_cut" and "takeout_cut.integers";
     buffers {
-        0: both triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
         32: both winners: View<'a, u32>,
@@ -520,7 +515,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1, "FEW"(2) = 1024];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "0e6311d30966f5a2e102888bbf6cc9fe3d3d11e0718e504f86bcecec663e3cc2";
+    source "1a4415e57fc1a90a3c1526edaa1281a8964a220913822801f2cbd78d61f1e34e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -530,8 +525,8 @@ define_kernel! {
     /// turn among each other. The others wait, and remember whom for: neighbors stay neighbors until one of them goes.
     TakeoutElect(TakeoutElectArgs) = "takeout_elect";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read state: View<'a, u32>,
         24: read waiting: View<'a, u32>,
         32: written later: View<'a, u32>,
@@ -546,8 +541,8 @@ define_kernel! {
     argument_bytes 72;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
-    capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "dc30e9424903879387ee8d2416594864cf3585767c463608b40fdffae7cc3b68";
+    capabilities ["GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "d43944643a7c5dae1b5e835f639c7f957130ed634f80cb07b2feae315165a914";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -573,7 +568,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "43c7285d6648b50ec5e0ef3fb6a34a4bb69233756b27a7a29409600713156f81";
+    source "d069c054d9f2dafecdd466ad86710acc35e3f969bb0fc39b4d9162582966b6d9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -582,8 +577,8 @@ define_kernel! {
     /// and tells pinned sites around them of a half-edge that they still have.
     TakeoutLink(TakeoutLinkArgs) = "takeout_link";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: both state: View<'a, u32>,
         24: read edge_of: View<'a, u32>,
         32: both edges: View<'a, [u32; 2]>,
@@ -595,8 +590,8 @@ define_kernel! {
     argument_bytes 52;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "1949713572a0c2a828f085714535e3101d7f8f17ecb6996d98bf5e9a31f22704";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "350c5c0ba23f3b086b044202efb42b257a9b4eaeff2577c91597ade0f6d52817";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -605,7 +600,7 @@ define_kernel! {
     /// still pinned are to be taken out.
     UnpinFinish(UnpinFinishArgs) = "unpin_finish";
     buffers {
-        0: read triangles: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
         8: both state: View<'a, u32>,
         16: both all: View<'a, u32>,
         24: both stuck: View<'a, u32>,
@@ -616,8 +611,8 @@ define_kernel! {
     argument_bytes 48;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
-    capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "5d09dbcea45946d15fa9d61fb8fbb0319fa59b952dd26cda0b3e457bb79085b4";
+    capabilities ["GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "8fa2862e789bb52aa71df2205c1a91446948ac714737a4e4e6228718d1cca8a4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -626,8 +621,8 @@ define_kernel! {
     /// counterclockwise. The others wait for the next round, and remember whom for: while that one waits, so do they.
     UnpinStars(UnpinStarsArgs) = "unpin_stars" and "unpin_stars.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: both positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
         32: read points: View<'a, [u32; 4]>,
@@ -647,6 +642,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "516e00781aa0b2cb7120ed64f5c9e719d9dfb0a1d08260d5a284f77396b0720b";
+    source "a3612a72fb8a9971c26f8f75765055222e64e6db9993882f2d1c4c0d387be1b2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

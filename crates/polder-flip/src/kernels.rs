@@ -3,31 +3,30 @@
 use polder_vulkan::{View, define_kernel};
 
 define_kernel! {
-    /// The end of a round and the beginning of the next in one: renews the links around all flips, gives claimed triangles back,
-    /// and tests the edges that are handed on, which claim their triangles for the next round. An illegal edge next to no flip
+    /// The end of a round and the beginning of the next in one: renews the links around all flips, and
+    /// tests the edges that are handed on, which claim their triangles for the next round. An illegal edge next to no flip
     /// is known to be illegal.
     AdvanceEdges(AdvanceEdgesArgs) = "advance_edges" and "advance_edges.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
-        24: both state: View<'a, u32>,
-        32: read illegal: View<'a, u32>,
-        40: written next_illegal: View<'a, u32>,
+        24: both claims: View<'a, u32>,
+        32: read illegal: View<'a, [u32; 2]>,
+        40: written next_illegal: View<'a, [u32; 2]>,
         48: both words: View<'a, u32>,
         56: both report: View<'a, u32>,
     }
     values {
-        64: stride: u32,
-        68: scope: u32,
-        72: parity: u32,
+        64: scope: u32,
+        68: parity: u32,
     }
-    argument_bytes 76;
+    argument_bytes 72;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "ef2a92634d552dc381d056750f1ca3b82b49d8ef6a29415292c7a83cac5a9b5d";
+    source "02e175e6c2cfe2cd5518317da971a581c483ce9c2f2085f891d84437c02870e3";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -36,10 +35,10 @@ define_kernel! {
     /// Outer links keep the names that they had before the round, until they are renewed.
     FlipEdges(FlipEdgesArgs) = "flip_edges";
     buffers {
-        0: both triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
-        16: both state: View<'a, u32>,
-        24: both illegal: View<'a, u32>,
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
+        16: both claims: View<'a, u32>,
+        24: both illegal: View<'a, [u32; 2]>,
         32: maybe_read edges: Option<View<'a, u32>>,
         40: maybe_both edge_count: Option<View<'a, u32>>,
         48: maybe_both listed: Option<View<'a, u32>>,
@@ -47,46 +46,44 @@ define_kernel! {
         64: both report: View<'a, u32>,
     }
     values {
-        72: stride: u32,
-        76: limit: u32,
-        80: least: u32,
-        84: parity: u32,
+        72: limit: u32,
+        76: least: u32,
+        80: parity: u32,
     }
-    argument_bytes 88;
+    argument_bytes 84;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "907144866755e3bdbab5748ae7ee15db33d7d204c99352eb47261accc5907bc7";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "6f2e55be1272f4cc5541d94d670dac857c8922486a088a3f854cb247ec15e401";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
 define_kernel! {
     /// Whole rounds inside one workgroup, from the claims of one to the claims of the next, while few edges are illegal: so many
     /// rounds as are allowed, and fewer where nothing is left, or too much. The same rounds as by the wide kernels. The first
-    /// edges of a round's list lie in shared memory with their twins, the others in the lists of the wide kernels.
+    /// edges of a round's list lie in shared memory, the others in the lists of the wide kernels.
     FlipTail(FlipTailArgs) = "flip_tail" and "flip_tail.integers";
     buffers {
-        0: both triangles: View<'a, u32>,
-        8: both links: View<'a, u32>,
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
-        24: both state: View<'a, u32>,
-        32: both illegal_0: View<'a, u32>,
-        40: both illegal_1: View<'a, u32>,
+        24: both claims: View<'a, u32>,
+        32: both illegal_0: View<'a, [u32; 2]>,
+        40: both illegal_1: View<'a, [u32; 2]>,
         48: both words: View<'a, u32>,
         56: both report: View<'a, u32>,
     }
     values {
-        64: stride: u32,
-        68: scope: u32,
-        72: least: u32,
-        76: most: u32,
-        80: most_flips: u32,
+        64: scope: u32,
+        68: least: u32,
+        72: most: u32,
+        76: most_flips: u32,
     }
-    argument_bytes 84;
+    argument_bytes 80;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "28a7822785424c039edc4cc6fcd57924876b7ed946ff8c4143a0494005a177b6";
+    source "b0575c7d77d98a1a034d3b5c68d4cbc72560c529d911dcf2962178b971243a18";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -134,20 +131,18 @@ define_kernel! {
     /// round are nobody's concern.
     RelinkEdges(RelinkEdgesArgs) = "relink_edges";
     buffers {
-        0: both links: View<'a, u32>,
-        8: both state: View<'a, u32>,
-        16: read illegal: View<'a, u32>,
-        24: both words: View<'a, u32>,
+        0: far_both links: View<'a, u32>,
+        8: read illegal: View<'a, [u32; 2]>,
+        16: both words: View<'a, u32>,
     }
     values {
-        32: stride: u32,
-        36: parity: u32,
+        24: parity: u32,
     }
-    argument_bytes 40;
+    argument_bytes 28;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "36e503ebb751fcc96014104326291cae38dbacf32e598358edb2c07a684df0b4";
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "401a42966001e8e838b39b98d17b87efb201a5f84b6811afa4f113b92977142e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -156,29 +151,28 @@ define_kernel! {
     /// repeat, and triangles may be free, `listed` sees to it that each is tested once.
     TestEdges(TestEdgesArgs) = "test_edges" and "test_edges.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: both edges: View<'a, u32>,
         32: read edge_count: View<'a, u32>,
         40: maybe_both listed: Option<View<'a, u32>>,
-        48: both state: View<'a, u32>,
-        56: written illegal: View<'a, u32>,
+        48: both claims: View<'a, u32>,
+        56: written illegal: View<'a, [u32; 2]>,
         64: both words: View<'a, u32>,
         72: both report: View<'a, u32>,
     }
     values {
-        80: stride: u32,
-        84: limit: u32,
-        88: scope: u32,
-        92: parity: u32,
+        80: limit: u32,
+        84: scope: u32,
+        88: parity: u32,
     }
-    argument_bytes 96;
+    argument_bytes 92;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "ef62d64adb37f7475914ec8c15139ff442fdfac1aa4833c842963ee181e97be6";
+    source "f5b53ff49655df0554f2e8a2acd0cd4f17a8e32e919dfed24f1c05af5735273b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -187,25 +181,24 @@ define_kernel! {
     /// their two triangles.
     TestMesh(TestMeshArgs) = "test_mesh" and "test_mesh.integers";
     buffers {
-        0: read triangles: View<'a, u32>,
-        8: read links: View<'a, u32>,
+        0: far_read triangles: View<'a, u32>,
+        8: far_read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
-        24: both state: View<'a, u32>,
-        32: written illegal: View<'a, u32>,
+        24: both claims: View<'a, u32>,
+        32: written illegal: View<'a, [u32; 2]>,
         40: both words: View<'a, u32>,
         48: both report: View<'a, u32>,
         56: read slots: View<'a, u32>,
     }
     values {
-        64: stride: u32,
-        68: scope: u32,
-        72: parity: u32,
+        64: scope: u32,
+        68: parity: u32,
     }
-    argument_bytes 76;
+    argument_bytes 72;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "4cf0c14801f83f1c4034ede157289867d5a17dac0b72640f4a2032ea68d1b8a7";
+    source "11bcba52d9e0894d3d9e2d10676354915a4f31c9401af517fcbebdb4fb6823ab";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

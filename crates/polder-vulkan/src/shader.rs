@@ -23,6 +23,8 @@ pub struct BufferArgument {
     pub offset: u32,
     /// How it is used.
     pub access: Access,
+    /// Whether the kernel reaches more than 4 GiB of it.
+    pub far: bool,
 }
 
 /// One side of a workgroup.
@@ -102,12 +104,14 @@ pub(crate) struct Touch {
     pub(crate) start: u64,
     pub(crate) end: u64,
     pub(crate) write: bool,
+    /// Whether it may be longer than kernels reach elsewhere.
+    pub(crate) far: bool,
 }
 
 impl Touch {
     pub(crate) fn of<T: Pod>(view: View<'_, T>, write: bool) -> Self {
         let buffer = Arc::clone(view.buffer);
-        Touch { buffer, start: view.start, end: view.start + view.bytes(), write }
+        Touch { buffer, start: view.start, end: view.start + view.bytes(), write, far: false }
     }
 }
 
@@ -139,7 +143,8 @@ impl<'e, 'a> Encoder<'e, 'a> {
         self.value(offset, view.device_address());
         let argument = self.buffers.iter().find(|argument| argument.offset as usize == offset);
         let access = argument.map_or(Access::ReadWrite, |argument| argument.access);
-        self.touches.push(Touch::of(view, access != Access::Read));
+        let far = argument.is_some_and(|argument| argument.far);
+        self.touches.push(Touch { far, ..Touch::of(view, access != Access::Read) });
     }
 }
 

@@ -49,6 +49,7 @@ macro_rules! define_kernel {
                         name: stringify!($buffer),
                         offset: $at,
                         access: $crate::define_kernel!(@access $access),
+                        far: $crate::define_kernel!(@far $access),
                     },)*
                 ],
                 workgroup: [$($crate::Side::$side($count)),*],
@@ -72,10 +73,20 @@ macro_rules! define_kernel {
     (@about maybe_read) => { "read, may be left out" };
     (@about maybe_written) => { "written, may be left out" };
     (@about maybe_both) => { "read and written, may be left out" };
+    (@about far_read) => { "read, of any length" };
+    (@about far_written) => { "written, of any length" };
+    (@about far_both) => { "read and written, of any length" };
     (@access read) => { $crate::Access::Read };
     (@access written) => { $crate::Access::Write };
     (@access both) => { $crate::Access::ReadWrite };
     (@access maybe_read) => { $crate::Access::Read };
     (@access maybe_written) => { $crate::Access::Write };
     (@access maybe_both) => { $crate::Access::ReadWrite };
+    (@access far_read) => { $crate::Access::Read };
+    (@access far_written) => { $crate::Access::Write };
+    (@access far_both) => { $crate::Access::ReadWrite };
+    (@far far_read) => { true };
+    (@far far_written) => { true };
+    (@far far_both) => { true };
+    (@far $other:ident) => { false };
 }

@@ -89,7 +89,7 @@ impl Case {
         let slots = self.mesh.slots() + 5;
         let mesh = Mesh::with_slots(&gpu.device, self.positions.len(), slots).unwrap();
         // What lies behind the slots in use must not matter.
-        gpu.engine.upload(mesh.corners(), &words(3, 3 * slots)).unwrap();
+        gpu.engine.upload(mesh.corners(), &words(3, 8 * slots)).unwrap();
         mesh.upload(&mut gpu.engine, &self.mesh, &self.positions).unwrap();
         OnDevice { mesh, vertex_of: gpu.buffer(&self.vertex_of), order: gpu.buffer(&self.order) }
     }

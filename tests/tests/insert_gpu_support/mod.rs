@@ -59,7 +59,6 @@ pub(crate) struct Round {
     pub(crate) center: [DVec2; 3],
     pub(crate) waiting: Vec<[u32; 2]>,
     pub(crate) claims: Vec<[u32; 3]>,
-    pub(crate) rounds: Vec<u32>,
 }
 
 impl Round {
@@ -73,8 +72,8 @@ impl Round {
         let begun = expected::insert_begin(&padded, positions.len());
         let center = padded.triangles[begun.center_slot as usize].map(|v| positions[v as usize]);
         let waiting = expected::insert_wait(&begun, &new.points, &new.starts);
-        let (claims, rounds) = (vec![[NONE; 3]; count], vec![0; positions.len()]);
-        Self { mesh: padded, positions, slots, new, begun, center, waiting, claims, rounds }
+        let claims = vec![[NONE; 3]; count];
+        Self { mesh: padded, positions, slots, new, begun, center, waiting, claims }
     }
 
     pub(crate) fn locate(&mut self) -> expected::Located {
@@ -86,8 +85,8 @@ impl Round {
     }
 
     pub(crate) fn graft(&mut self, places: &mut [[u32; 2]]) -> Vec<[u32; 2]> {
-        let Self { mesh, slots, waiting, claims, rounds, .. } = self;
-        expected::insert_graft(mesh, slots, waiting, places, claims, rounds, 1)
+        let Self { mesh, slots, waiting, claims, .. } = self;
+        expected::insert_graft(mesh, slots, waiting, places, claims, 1)
     }
 
     pub(crate) fn words(&self) -> [u32; 40] {
@@ -104,6 +103,11 @@ impl Round {
     pub(crate) fn on(&self, gpu: &mut Gpu, places: &[[u32; 2]], words: &[u32; 40]) -> On {
         let mesh = Mesh::with_slots(&gpu.device, self.positions.len(), self.mesh.slots()).unwrap();
         mesh.upload(&mut gpu.engine, &self.mesh, &self.positions).unwrap();
+        let mut records = gpu.fetch(mesh.records());
+        for (record, claims) in records.iter_mut().zip(&self.claims).filter(|(_, claims)| claims[2] != NONE) {
+            record[7] = SPLIT | claims[2];
+        }
+        gpu.engine.upload(mesh.records(), &records).unwrap();
         let limit = self.waiting.len();
         let mut waiting = self.waiting.clone();
         waiting.resize(2 * limit, [7; 2]);
@@ -114,8 +118,7 @@ impl Round {
             waiting: gpu.buffer(&waiting),
             freed: gpu.buffer(&self.slots),
             places: gpu.buffer(held.as_flattened()),
-            claims: gpu.buffer(self.claims.as_flattened()),
-            rounds: gpu.buffer(&self.rounds),
+            claims: gpu.buffer(&self.claims.iter().map(|&[a, b, _]| [a, b]).collect::<Vec<_>>()),
             vertex_of: gpu.buffer(&vec![7; self.positions.len()]),
             hull: gpu.buffer(&[0]),
             words: gpu.buffer(words),
@@ -124,13 +127,25 @@ impl Round {
     }
 }
 
+/// The mark of a note behind links.
+const SPLIT: u32 = 1 << 30;
+
+impl On {
+    /// Whether claims and notes are these.
+    pub(crate) fn claims(&self, gpu: &mut Gpu, claims: &[[u32; 3]]) -> bool {
+        let found = gpu.fetch(self.claims.view());
+        let notes = gpu.fetch(self.mesh.records()).into_iter().map(|record| record[7]);
+        let found = found.into_iter().zip(notes).map(|([score, first], note)| (score, first, note));
+        found.eq(claims.iter().map(|&[score, first, split]| (score, first, split | SPLIT)))
+    }
+}
+
 pub(crate) struct On {
     pub(crate) mesh: Mesh,
     pub(crate) waiting: Buffer<[u32; 2]>,
     pub(crate) freed: Buffer<[u32; 2]>,
     pub(crate) places: Buffer<u32>,
-    pub(crate) claims: Buffer<u32>,
-    pub(crate) rounds: Buffer<u32>,
+    pub(crate) claims: Buffer<[u32; 2]>,
     pub(crate) vertex_of: Buffer<u32>,
     pub(crate) hull: Buffer<u32>,
     pub(crate) words: Buffer<u32>,

@@ -153,7 +153,11 @@ fn access(buffer: &Buffer) -> String {
         (false, true) => "written",
         (true, true) => "both",
     };
-    if buffer.optional { format!("maybe_{access}") } else { access.to_owned() }
+    match (buffer.optional, buffer.far) {
+        (true, _) => format!("maybe_{access}"),
+        (false, true) => format!("far_{access}"),
+        (false, false) => access.to_owned(),
+    }
 }
 
 /// The compiler of each kernel, as an earlier run wrote it down.

@@ -38,6 +38,8 @@ pub(super) struct Buffer {
     pub(super) written: bool,
     /// May be left out: its block is named `Maybe...`.
     pub(super) optional: bool,
+    /// Reached by addresses of 64 bits, and so may have more than 4 GiB.
+    pub(super) far: bool,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -307,26 +309,29 @@ impl Reader {
         }
     }
 
-    /// A block of one unbounded array is a buffer of its elements; any other block is a buffer of itself.
+    /// A block of one unbounded array is a buffer of its elements. A block of one other member is a buffer of such members,
+    /// which shaders reach by adding to its address. Any other block is a buffer of itself.
     fn buffer(&self, block: u32) -> Result<Buffer, String> {
         let name = self.name(block).unwrap_or_default();
         let read = self.member_decoration(block, 0, Decoration::NonReadable).is_none();
         let written = self.member_decoration(block, 0, Decoration::NonWritable).is_none();
         let operands = &self.global(block)?.operands;
-        let mut element = None;
+        let (mut element, mut far) = (None, false);
         if let [Operand::IdRef(only)] = operands.as_slice() {
             let array = self.global(*only)?;
             if let (Op::TypeRuntimeArray, [Operand::IdRef(of)]) = (array.class.opcode, array.operands.as_slice()) {
                 let found = self.of(*of)?;
                 self.stride(*only, &found)?;
                 element = Some(found);
+            } else {
+                (element, far) = (Some(self.of(*only)?), true);
             }
         }
         let element = match element {
             Some(element) => element,
             None => Type::Struct(self.layout(block)?),
         };
-        Ok(Buffer { element: Box::new(element), read, written, optional: name.starts_with("Maybe") })
+        Ok(Buffer { element: Box::new(element), read, written, optional: name.starts_with("Maybe"), far })
     }
 
     fn workgroup(&self) -> Result<[Side; 3], String> {

@@ -17,6 +17,7 @@
 use crate::DualizeError;
 use crate::kernels::*;
 use crate::reference::kernels::dualize::words_in_row;
+use polder_flip::gpu::Mesh;
 use polder_vulkan::primitives::Scan;
 use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, Pool, ReadBack, Recording, RunReport, View};
 
@@ -57,17 +58,6 @@ pub struct Input<'a> {
     pub pixels: View<'a, [u16; 2]>,
     /// How many sites there are.
     pub sites: View<'a, u32>,
-}
-
-/// What the stage fills: a mesh without constrained edges.
-#[derive(Clone, Copy, Debug)]
-pub struct Output<'a> {
-    /// Corners of each triangle. There must be room for as many as a sphere of all sites and the ghost has.
-    pub triangles: View<'a, [u32; 3]>,
-    /// Links of each triangle.
-    pub links: View<'a, [u32; 3]>,
-    /// How many triangles there are.
-    pub slots: View<'a, u32>,
 }
 
 /// What the stage counted.
@@ -191,7 +181,8 @@ impl Stage {
         })
     }
 
-    /// Writes the dual of a flooded diagram, as [`reference::dual`](crate::reference::dual) does.
+    /// Writes the dual of a flooded diagram into the mesh, as [`reference::dual`](crate::reference::dual) does. There must be
+    /// room for as many triangles as a sphere of all sites and the ghost has.
     ///
     /// # Errors
     ///
@@ -200,7 +191,7 @@ impl Stage {
         &self,
         recording: &mut Recording,
         input: Input<'_>,
-        output: Output<'_>,
+        mesh: &Mesh,
         buffers: &Buffers,
     ) -> Result<Read, Error> {
         let [width, height] = input.size;
@@ -208,7 +199,7 @@ impl Stage {
         if input.size != buffers.size || input.colors.len() != width as usize * height as usize {
             return refused(format!("{:?} on {:?} pixels; buffers for {:?}", input.colors, input.size, buffers.size));
         }
-        let room = output.triangles.len().min(output.links.len()).min(NONE as usize / 3);
+        let room = mesh.capacity();
         let wanted = crate::reference::kernels::dualize::triangles_of(input.pixels.len().min(input.colors.len()));
         if room < wanted {
             return refused(format!("room for {room} triangles; {wanted} may be needed"));
@@ -234,7 +225,7 @@ impl Stage {
         recording.dispatch(&self.count, count_groups(input.size), &arguments);
         let total = buffers.word(Word::Total)?;
         buffers.scan.record(recording, first.len(), first, first, Some(total));
-        let slots = output.slots;
+        let slots = mesh.slots();
         let arguments = DualizeCheckArgs { sites, total, crossing, uncolored, slots, limit: room as u32 };
         recording.dispatch(&self.check, [1, 1, 1], &arguments);
         let arguments = DualizeWriteArgs {
@@ -243,8 +234,8 @@ impl Stage {
             vertices: buffers.vertices.view().cast(),
             first,
             slots,
-            triangles: output.triangles.cast(),
-            links: output.links.cast(),
+            triangles: mesh.corners(),
+            links: mesh.twins(),
             lost: buffers.word(Word::Lost)?,
             folded: buffers.word(Word::Folded)?,
             far: buffers.far.view().cast(),
@@ -259,8 +250,8 @@ impl Stage {
             pixels: input.pixels.cast(),
             vertices: buffers.vertices.view().cast(),
             first,
-            triangles: output.triangles.cast(),
-            links: output.links.cast(),
+            triangles: mesh.corners(),
+            links: mesh.twins(),
             lost: buffers.word(Word::Lost)?,
             far: buffers.far.view().cast(),
             far_count: buffers.word(Word::Far)?,

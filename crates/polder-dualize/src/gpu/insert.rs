@@ -62,14 +62,14 @@ pub struct Input<'a> {
     pub freed: View<'a, [u32; 2]>,
 }
 
-/// What the stage holds beside the mesh: 32 bytes a point and 20 a slot.
+/// What the stage holds beside the mesh: 32 bytes a point and 14 a slot.
 #[derive(Debug)]
 pub struct Buffers {
     waiting: Buffer<[u32; 2]>,
     places: Buffer<u32>,
     claims: Buffer<u32>,
-    /// By vertex: a half-edge out of it, then the round in which it was inserted.
-    rounds: Buffer<u32>,
+    /// By vertex: a half-edge out of it.
+    half_edges: Buffer<u32>,
     vertex_of: Buffer<u32>,
     words: Buffer<u32>,
     ends: Buffer<u32>,
@@ -89,7 +89,7 @@ impl Buffers {
         self.waiting.give(pool);
         self.places.give(pool);
         self.claims.give(pool);
-        self.rounds.give(pool);
+        self.half_edges.give(pool);
         self.edges.give(pool);
     }
 
@@ -210,8 +210,8 @@ impl Stage {
         Estimate::new()
             .buffer::<[u32; 2]>("points that wait", 2 * points)
             .buffer::<[u32; 2]>("places", points)
-            .buffer::<[u32; 3]>("claims of points", slots)
-            .buffer::<u32>("rounds of points", points)
+            .buffer::<[u32; 2]>("claims of points", slots)
+            .buffer::<u32>("half-edges of vertices", points)
             .buffer::<u32>("vertices of points", points)
             .buffer::<u32>("insert words", WORDS)
             .buffer::<u32>("ends of a chain", 2 * END_GROUPS as usize)
@@ -229,8 +229,8 @@ impl Stage {
         Ok(Buffers {
             waiting: Buffer::new(device, "points that wait", 2 * points)?,
             places: Buffer::new(device, "places", 2 * points)?,
-            claims: Buffer::new(device, "claims of points", 3 * slots)?,
-            rounds: Buffer::new(device, "rounds of points", points)?,
+            claims: Buffer::new(device, "claims of points", 2 * slots)?,
+            half_edges: Buffer::new(device, "half-edges of vertices", points)?,
             vertex_of: Buffer::new(device, "vertices of points", points)?,
             words: Buffer::new(device, "insert words", WORDS)?,
             ends: Buffer::new(device, "ends of a chain", 2 * END_GROUPS as usize)?,
@@ -254,14 +254,13 @@ impl Stage {
         buffers: &Buffers,
         input: Input<'_>,
     ) -> Result<Read, Error> {
-        let (points, slots) = (buffers.vertex_of.len(), buffers.claims.len() / 3);
+        let (points, slots) = (buffers.vertex_of.len(), buffers.claims.len() / 2);
         if mesh.vertices() != points || mesh.capacity() > slots || input.points.len().max(input.starts.len()) > points {
             let (vertices, capacity) = (mesh.vertices(), mesh.capacity());
             let why = format!("{vertices} vertices and {capacity} slots; buffers for {points} and {slots}");
             return Err(Error::Recording { command: "insert", why });
         }
         self.record_begin(recording, mesh, buffers, input)?;
-        flips.0.record_start(recording, flips.1);
         buffers.edges.record_clear(recording);
         flips.1.list().record_clear(recording);
         buffers.hull.record_clear(recording);
@@ -289,7 +288,7 @@ impl Stage {
         input: Input<'_>,
     ) -> Result<(), Error> {
         let (limit, vertices) = (mesh.capacity() as u32, mesh.vertices() as u32);
-        let (words, half_edges) = (buffers.words.view(), buffers.rounds.view());
+        let (words, half_edges) = (buffers.words.view(), buffers.half_edges.view());
         recording.fill(buffers.claims.view(), NONE);
         recording.fill(half_edges, NONE);
         recording.fill(words, 0);
@@ -328,7 +327,7 @@ impl Stage {
         let (triangles, links, positions) = (mesh.corners(), mesh.twins(), mesh.positions().cast());
         let (words, count) = (buffers.words.view(), mesh.vertices() as u32);
         let groups = count.div_ceil(WORKGROUP).clamp(1, END_GROUPS);
-        let (half_edges, ends) = (buffers.rounds.view(), buffers.ends.view());
+        let (half_edges, ends) = (buffers.half_edges.view(), buffers.ends.view());
         for (groups, count, last) in [(groups, count, 0), (1, 2 * groups, 1)] {
             let arguments = InsertEndsArgs { triangles, links, positions, half_edges, ends, words, count, last };
             recording.dispatch(&self.ends, [groups, 1, 1], &arguments);
@@ -367,23 +366,18 @@ impl Stage {
         round.dispatch_indirect(&self.locate, groups, &arguments);
         let arguments = InsertClaimArgs { links, waiting, places, claims, words, limit };
         round.dispatch_indirect(&self.claim, groups, &arguments);
-        let rounds = buffers.rounds.view();
-        let arguments = InsertGraftArgs { triangles, links, waiting, freed, places, claims, rounds, words, limit };
+        let arguments = InsertGraftArgs { triangles, links, waiting, freed, places, claims, words, limit };
         round.dispatch_indirect(&self.graft, groups, &arguments);
         let arguments = InsertRelinkArgs {
             triangles,
             links,
-            waiting,
-            freed,
             places,
             claims,
-            rounds,
             edges: buffers.edges.edges(),
             edge_count: buffers.edges.count(),
             hull_edges: hull.edges(),
             hull_count: hull.count(),
             words,
-            limit,
             edge_limit: buffers.edges.limit(),
             hull_limit: hull.limit(),
         };

@@ -124,8 +124,7 @@ pub fn insert_with(
     let center = Center::of(&out.mesh, positions).ok_or_else(|| broken(STAGE, GHOST))?;
     let mut waiting = insert_wait(&begun, &new.points, &new.starts);
     let claims = vec![[NONE; 3]; out.mesh.slots()];
-    let rounds = vec![0; positions.len()];
-    let mut round = Round { claims, rounds, active: Active::new(), positions, slots: &slots, center };
+    let mut round = Round { claims, active: Active::new(), positions, slots: &slots, center };
     let bound = waiting.len() as u64;
     while !waiting.is_empty() {
         go_on()?;
@@ -147,15 +146,13 @@ struct Round<'a> {
     center: Center,
     /// For each slot, what the kernels note there.
     claims: Vec<[u32; 3]>,
-    /// The round in which each point was inserted.
-    rounds: Vec<u32>,
     active: Active,
 }
 
 impl Round<'_> {
     /// One round; returns the points still waiting.
     fn run(&mut self, out: &mut Inserted, waiting: &[[u32; 2]]) -> Result<Vec<[u32; 2]>, DualizeError> {
-        let Self { slots, claims, rounds, .. } = self;
+        let Self { slots, claims, .. } = self;
         let (mesh, round) = (&mut out.mesh, out.rounds as u32);
         // Step 1.
         let Located { mut places, on_vertices, steps } =
@@ -168,11 +165,11 @@ impl Round<'_> {
         }
         // Steps 2 and 3.
         insert_claim(mesh, waiting, &mut places, claims);
-        let later = insert_graft(mesh, slots, waiting, &mut places, claims, rounds, round);
+        let later = insert_graft(mesh, slots, waiting, &mut places, claims, round);
         let winners = places.iter().filter(|[place, _]| *place != NONE && place & WON != 0).count();
         out.inserted += winners as u64;
         let flips = later.len() >= winners.div_ceil(16);
-        let [edges, ghosts] = insert_relink(mesh, slots, waiting, &places, claims, rounds, round, flips);
+        let [edges, ghosts] = insert_relink(mesh, slots, waiting, &places, claims, round, flips);
         edges.iter().for_each(|&h| self.active.push(h));
 
         // Steps 4 and 5.

@@ -15,6 +15,7 @@ const PENDING: usize = 16;
 pub struct EdgeList {
     edges: Buffer<u32>,
     count: Buffer<u32>,
+    limit: usize,
 }
 
 impl EdgeList {
@@ -24,7 +25,13 @@ impl EdgeList {
     ///
     /// If the memory cannot be had.
     pub fn new(device: &Device, limit: usize) -> Result<Self, Error> {
-        Ok(Self { edges: Buffer::new(device, "edges", limit)?, count: Buffer::new(device, "edge count", WORDS)? })
+        Self::with_room(device, limit, limit)
+    }
+
+    /// With so many words.
+    fn with_room(device: &Device, limit: usize, words: usize) -> Result<Self, Error> {
+        let (edges, count) = (Buffer::new(device, "edges", words)?, Buffer::new(device, "edge count", WORDS)?);
+        Ok(Self { edges, count, limit })
     }
 
     /// What [`EdgeList::new`] will hold.
@@ -49,7 +56,7 @@ impl EdgeList {
 
     /// How many fit.
     pub fn limit(&self) -> u32 {
-        self.edges.len() as u32
+        self.limit as u32
     }
 
     /// Records that the list becomes empty.
@@ -102,17 +109,16 @@ impl TallyRead {
     }
 }
 
-/// Scratch memory of the stage, for one number of slots: 24.4 bytes a slot.
+/// Scratch memory of the stage, for one number of slots: 28.4 bytes a slot.
 #[derive(Debug)]
 pub struct Buffers {
     pub(super) slots: usize,
-    /// By triangle: the least priority that claims it, in even rounds and again in odd ones; and again, the last round that
-    /// flipped it, and along which edge.
-    pub(super) state: Buffer<u32>,
+    /// By triangle the least priority that claims it.
+    pub(super) claims: Buffer<u32>,
     /// A bit for each half-edge: whether it was met in this round.
     pub(super) listed: Buffer<u32>,
-    /// Illegal edges of even rounds.
-    pub(super) illegal: Buffer<u32>,
+    /// Illegal edges of even rounds, each by both half-edges.
+    pub(super) illegal: Buffer<[u32; 2]>,
     /// Those of odd rounds; a list for others, which a round has read before it writes there.
     pub(super) list: EdgeList,
     pub(super) words: Buffer<u32>,
@@ -129,17 +135,17 @@ fn listed_of(slots: usize) -> usize {
 
 pub(super) fn estimate(slots: usize) -> Estimate {
     Estimate::new()
-        .buffer::<u32>("state", 3 * slots)
+        .buffer::<u32>("claims", slots)
         .buffer::<u32>("listed", listed_of(slots))
-        .buffer::<u32>("illegal", edges_of(slots))
-        .and(EdgeList::estimate(edges_of(slots)))
+        .buffer::<[u32; 2]>("illegal", edges_of(slots))
+        .and(EdgeList::estimate(2 * edges_of(slots)))
         .buffer::<u32>("flip words", STEERING)
 }
 
 impl Buffers {
     /// Gives all of it; see [`Buffer::give`].
     pub fn give(&self, pool: &Pool) {
-        self.state.give(pool);
+        self.claims.give(pool);
         self.listed.give(pool);
         self.illegal.give(pool);
         self.list.give(pool);
@@ -150,10 +156,10 @@ impl Buffers {
         let words = |name, len| Buffer::<u32>::new(device, name, len);
         Ok(Self {
             slots,
-            state: words("state", 3 * slots)?,
+            claims: words("claims", slots)?,
             listed: words("listed", listed_of(slots))?,
-            illegal: words("illegal", edges_of(slots))?,
-            list: EdgeList::new(device, edges_of(slots))?,
+            illegal: Buffer::new(device, "illegal", edges_of(slots))?,
+            list: EdgeList::with_room(device, edges_of(slots), 2 * edges_of(slots))?,
             words: words("flip words", STEERING)?,
         })
     }
@@ -165,8 +171,8 @@ impl Buffers {
     }
 
     /// Illegal edges of even and of odd rounds.
-    pub(super) fn illegal(&self, parity: usize) -> View<'_, u32> {
-        if parity == 0 { self.illegal.view() } else { self.list.edges() }
+    pub(super) fn illegal(&self, parity: usize) -> View<'_, [u32; 2]> {
+        if parity == 0 { self.illegal.view() } else { self.list.edges.view().cast() }
     }
 
     /// One word: how many illegal edges the last [`Stage::record_flip`](super::Stage::record_flip) or

@@ -14,14 +14,19 @@ pub const MOST_SLOTS: usize = (1 << 30) / 3;
 /// Slots beyond two for each vertex.
 const SPARE: usize = 8;
 
+/// A triangle on the device.
+type Record = [u32; 8];
+/// Where links begin in a record.
+const LINKS: usize = 4;
+
 /// A [`GhostMesh`] in device memory, with the positions of its vertices.
 ///
-/// Triangles are as there; a word of links carries in its highest bit whether the edge is constrained. How many slots are in
-/// use is a word on the device, so that kernels can add some; what lies behind them is not defined.
+/// A triangle is a record of eight words, 32 bytes that memory brings as one: its corners in the first three, its links from
+/// the fifth on; the others are [`NONE`]. A word of links carries in its highest bit whether the edge is constrained. How many
+/// slots are in use is a word on the device, so that kernels can add some; what lies behind them is not defined.
 #[derive(Debug)]
 pub struct Mesh {
-    triangles: Buffer<[u32; 3]>,
-    links: Buffer<[u32; 3]>,
+    records: Buffer<Record>,
     positions: Buffer<DVec2>,
     slots: Buffer<u32>,
 }
@@ -36,8 +41,7 @@ impl Mesh {
     pub fn estimate(vertices: usize) -> Estimate {
         let slots = Self::slots_for(vertices);
         Estimate::new()
-            .buffer::<[u32; 3]>("triangles", slots)
-            .buffer::<[u32; 3]>("links", slots)
+            .buffer::<Record>("triangles", slots)
             .buffer::<DVec2>("positions", vertices)
             .buffer::<u32>("slots", 4)
     }
@@ -62,8 +66,7 @@ impl Mesh {
             return Err(Error::Recording { command: "mesh", why });
         }
         Ok(Self {
-            triangles: Buffer::new(device, "triangles", slots)?,
-            links: Buffer::new(device, "links", slots)?,
+            records: Buffer::new(device, "triangles", slots)?,
             positions: Buffer::new(device, "positions", vertices)?,
             slots: Buffer::new(device, "slots", 4)?,
         })
@@ -71,7 +74,7 @@ impl Mesh {
 
     /// Slots that there is memory for.
     pub fn capacity(&self) -> usize {
-        self.triangles.len()
+        self.records.len()
     }
 
     /// Vertices that there is memory for.
@@ -79,24 +82,21 @@ impl Mesh {
         self.positions.len()
     }
 
-    /// Corners by slot.
-    pub fn triangles(&self) -> View<'_, [u32; 3]> {
-        self.triangles.view()
+    /// All records.
+    pub fn records(&self) -> View<'_, [u32; 8]> {
+        self.records.view()
     }
 
-    /// Links by slot.
-    pub fn links(&self) -> View<'_, [u32; 3]> {
-        self.links.view()
-    }
-
-    /// Corners by half-edge: each half-edge's apex, as kernels take them.
+    /// Where the corners of the first triangle lie, and those of all others eight words further on each: as kernels take them.
     pub fn corners(&self) -> View<'_, u32> {
-        self.triangles.view().cast()
+        self.records.view().cast()
     }
 
-    /// Links by half-edge, as kernels take them.
+    /// Where the links of the first triangle lie, in the same way.
     pub fn twins(&self) -> View<'_, u32> {
-        self.links.view().cast()
+        let words = self.corners();
+        // Without a slot there is no link.
+        words.slice(LINKS.min(words.len())..words.len()).unwrap_or(words)
     }
 
     /// Positions by vertex.
@@ -124,10 +124,9 @@ impl Mesh {
             let (room, most) = (self.capacity(), self.vertices());
             return refused(format!("{slots} slots and {vertices} vertices; there is memory for {room} and {most}"));
         }
-        let links: Vec<[u32; 3]> =
-            mesh.links.iter().zip(&mesh.constrained).map(|(&row, &bits)| marked(row, bits)).collect();
-        engine.upload(self.triangles.view().slice(0..mesh.slots())?, &mesh.triangles)?;
-        engine.upload(self.links.view().slice(0..mesh.slots())?, &links)?;
+        let rows = mesh.triangles.iter().zip(&mesh.links).zip(&mesh.constrained);
+        let records: Vec<Record> = rows.map(|((&row, &links), &bits)| record(row, marked(links, bits))).collect();
+        engine.upload(self.records.view().slice(0..mesh.slots())?, &records)?;
         engine.upload(self.positions.view().slice(0..positions.len())?, positions)?;
         engine.upload(self.slots.slice(0..1)?, &[mesh.slots() as u32])?;
         Ok(())
@@ -141,8 +140,9 @@ impl Mesh {
     pub fn download(&self, engine: &mut Engine) -> Result<GhostMesh, Error> {
         let slots = engine.download_vec(self.slots.slice(0..1)?)?[0] as usize;
         let slots = slots.min(self.capacity());
-        let triangles = engine.download_vec(self.triangles.slice(0..slots)?)?;
-        let mut links = engine.download_vec(self.links.slice(0..slots)?)?;
+        let records = engine.download_vec(self.records.slice(0..slots)?)?;
+        let triangles: Vec<_> = records.iter().map(|&[a, b, c, ..]| [a, b, c]).collect();
+        let mut links: Vec<_> = records.iter().map(|&[.., f, g, h, _]| [f, g, h]).collect();
         let mut constrained = vec![0; slots];
         for (t, row) in links.iter_mut().enumerate().filter(|&(t, _)| triangles[t][0] != DELETED) {
             for (k, link) in row.iter_mut().enumerate() {
@@ -152,6 +152,10 @@ impl Mesh {
         }
         Ok(GhostMesh { triangles, links, constrained })
     }
+}
+
+fn record([a, b, c]: [u32; 3], [f, g, h]: [u32; 3]) -> Record {
+    [a, b, c, NONE, f, g, h, NONE]
 }
 
 fn marked(row: [u32; 3], bits: u8) -> [u32; 3] {

@@ -7,7 +7,7 @@
 //!    first round reads the whole mesh, a triangle an invocation, which tests the edges of which that is the lower side.
 //! 2. *Flip.* An edge that has both its triangles is flipped: their corners and links are nobody else's to write. Links
 //!    outward keep the names that the neighbors had before the round; a stamp on each triangle says that it was flipped in
-//!    this round, and along which edge.
+//!    this round, and along which edge. Who got a triangle gives it back.
 //! 3. *Renew and test again.* From a neighbor's stamp follows where the edge between is now: a flip moves two of its four
 //!    outer edges to the other triangle. Each side writes its own link, and that of a neighbor that was not flipped. The
 //!    edge so renewed is tested at once, which is step 1 of the next round: its corners, final since step 2, are at hand. An
@@ -26,8 +26,12 @@
 //!
 //! # Cost
 //!
-//! Memory: 24.4 bytes a slot beside the mesh, which is 49 a point. A flip reads and writes, in two dispatches, the rows of
-//! its two triangles and of up to four neighbors: corners, links, state and positions, about 40 sectors of 32 bytes.
+//! Memory: 28.4 bytes a slot beside the mesh, which is 57 a point. A flip reads and writes, in two dispatches, its two
+//! triangles and up to four neighbors, a sector of 32 bytes each with corners, links and stamp; and claims and positions.
+//!
+//! Kernels read all they need of a triangle before they write any of it: what has been written is no longer at hand in the
+//! cache of a multiprocessor, and neither is what lies beside it. Claims are an array of their own, since atomics in the
+//! sectors of triangles hold up those who read there.
 
 mod buffers;
 mod mesh;

@@ -33,15 +33,16 @@ struct Round<'a> {
 }
 
 impl Stage {
-    /// To be recorded once before rounds over these buffers.
+    /// To be recorded once before rounds over these buffers, while nothing has noted anything in the mesh: rounds are
+    /// numbered from here on, and triangles keep the number of the last one that flipped them.
     pub fn record_start(&self, recording: &mut Recording, buffers: &Buffers) {
-        recording.fill(buffers.state.view(), NONE);
+        recording.fill(buffers.claims.view(), NONE);
         recording.fill(buffers.listed.view(), 0);
         recording.fill(buffers.words.view(), 0);
     }
 
-    /// Flips until no edge is illegal, as [`reference::flip`](crate::reference::flip) does. Needs no
-    /// [`Stage::record_start`]. Adds to the tally.
+    /// Flips until no edge is illegal, as [`reference::flip`](crate::reference::flip) does. Adds to
+    /// the tally.
     ///
     /// # Errors
     ///
@@ -54,8 +55,6 @@ impl Stage {
         tally: &Tally,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "flip")?;
-        recording.fill(buffers.state.view(), NONE);
-        recording.fill(buffers.words.view(), 0);
         let round = Round { mesh, buffers, tally, scope: Scope::All };
         self.test_mesh(recording, round);
         let bound = u32::try_from(round_bound(mesh.capacity())).unwrap_or(u32::MAX);
@@ -89,8 +88,6 @@ impl Stage {
         self.flip(recording, round, Some((list, false)), 0, 0);
         let arguments = RelinkEdgesArgs {
             links: mesh.twins(),
-            state: buffers.state.view(),
-            stride: buffers.slots as u32,
             illegal: buffers.illegal(0),
             words: buffers.words.view(),
             parity: 0,
@@ -153,8 +150,7 @@ impl Stage {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            state: buffers.state.view(),
-            stride: buffers.slots as u32,
+            claims: buffers.claims.view(),
             illegal: buffers.illegal(0),
             words: buffers.words.view(),
             report: tally.words(),
@@ -175,8 +171,7 @@ impl Stage {
             edges: list.edges(),
             edge_count: list.count(),
             listed: repeats.then(|| buffers.listed.view()),
-            state: buffers.state.view(),
-            stride: buffers.slots as u32,
+            claims: buffers.claims.view(),
             illegal: buffers.illegal(0),
             words: buffers.words.view(),
             report: tally.words(),
@@ -201,8 +196,7 @@ impl Stage {
         let arguments = FlipEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
-            state: buffers.state.view(),
-            stride: buffers.slots as u32,
+            claims: buffers.claims.view(),
             illegal: buffers.illegal(parity),
             edges: list.map(EdgeList::edges),
             edge_count: list.map(EdgeList::count),
@@ -222,8 +216,7 @@ impl Stage {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            state: buffers.state.view(),
-            stride: buffers.slots as u32,
+            claims: buffers.claims.view(),
             illegal: buffers.illegal(parity),
             next_illegal: buffers.illegal(1 - parity),
             words: buffers.words.view(),
@@ -240,8 +233,7 @@ impl Stage {
             triangles: mesh.corners(),
             links: mesh.twins(),
             positions: mesh.positions().cast(),
-            state: buffers.state.view(),
-            stride: buffers.slots as u32,
+            claims: buffers.claims.view(),
             illegal_0: buffers.illegal(0),
             illegal_1: buffers.illegal(1),
             words: buffers.words.view(),

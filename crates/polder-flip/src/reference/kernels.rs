@@ -11,7 +11,7 @@ pub const WON: u32 = 1 << 31;
 /// What kernels keep, by triangle.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Scratch {
-    /// The least priority that claims it, else [`NONE`].
+    /// The least priority that claims it, else [`NONE`]: between the test of edges and the flips.
     pub claims: Vec<u32>,
     /// Four times the last round that flipped it, and the edge along which it was.
     pub stamps: Vec<u32>,
@@ -32,15 +32,15 @@ impl Scratch {
     }
 }
 
-/// Steps 1 and 2 of a round: which of these half-edges are illegal, in order, after they have claimed their triangles; and
-/// how many were tested. Each is taken once, by the lower half-edge of its edge, if its triangle is no free slot.
+/// Steps 1 and 2 of a round: which of these edges are illegal, in order, by their lower and their upper half-edge, after they
+/// have claimed their triangles; and how many were tested. Each is taken once, by the lower half-edge of its edge, if its triangle is no free slot.
 pub fn test_edges(
     mesh: &GhostMesh,
     positions: &[DVec2],
     edges: &[u32],
     hull_alone: bool,
     scratch: &mut Scratch,
-) -> (Vec<u32>, u64) {
+) -> (Vec<[u32; 2]>, u64) {
     let mut taken: Vec<u32> =
         edges.iter().filter(|&&h| !mesh.is_deleted((h / 3) as usize)).map(|&h| h.min(mesh.twin(h))).collect();
     let mut listed = vec![false; 3 * mesh.slots()];
@@ -53,22 +53,25 @@ pub fn test_edges(
             *claim = (*claim).min(priority(h));
         }
     }
-    (taken, tests)
+    (taken.into_iter().map(|h| [h, mesh.twin(h)]).collect(), tests)
 }
 
 /// Step 3, first half: flips what got both its triangles, marks it [`WON`], and returns the number of flips. Links around
-/// the flips keep their names from before the round.
-pub fn flip_edges(mesh: &mut GhostMesh, scratch: &mut Scratch, illegal: &mut [u32]) -> u64 {
+/// the flips keep their names from before the round. Whoever got a triangle gives it back.
+pub fn flip_edges(mesh: &mut GhostMesh, scratch: &mut Scratch, illegal: &mut [[u32; 2]]) -> u64 {
     scratch.round += 1;
     let mut flips = 0;
-    for h in illegal {
-        if scratch.claims[(*h / 3) as usize] != priority(*h) {
+    for [h, g] in illegal {
+        let has = [*h, *g].map(|side| {
+            let claim = &mut scratch.claims[(side / 3) as usize];
+            let has = *claim == priority(*h);
+            *claim = if has { NONE } else { *claim };
+            has
+        });
+        if has != [true; 2] {
             continue;
         }
-        let g = mesh.twin(*h);
-        if scratch.claims[(g / 3) as usize] != priority(*h) {
-            continue;
-        }
+        let g = *g;
         let outer = [next(g), next(*h)].map(|side| (mesh.twin(side), mesh.is_constrained(side)));
         let (c, d) = (mesh.apex(*h), mesh.apex(g));
         for (side, corner, (link, constrained)) in [(*h, d, outer[0]), (g, c, outer[1])] {
@@ -86,26 +89,19 @@ pub fn flip_edges(mesh: &mut GhostMesh, scratch: &mut Scratch, illegal: &mut [u3
     flips
 }
 
-/// Step 3, second half, and step 4: renews the links around the flips, gives claimed triangles back, and returns the edges
-/// of the next round, each once by its lower half-edge.
-pub fn relink_edges(mesh: &mut GhostMesh, scratch: &mut Scratch, illegal: &[u32]) -> Vec<u32> {
+/// Step 3, second half, and step 4: renews the links around the flips, and returns the edges of
+/// the next round, each once by its lower half-edge.
+pub fn relink_edges(mesh: &mut GhostMesh, scratch: &Scratch, illegal: &[[u32; 2]]) -> Vec<u32> {
     let mut handed = Vec::new();
-    for &entry in illegal {
+    for &[entry, g] in illegal {
         let h = entry & !WON;
         if entry & WON == 0 {
-            // An edge that went over to the other triangle of a flip is found there.
-            let moved = scratch.flipped(h / 3).is_some_and(|edge| h == next(edge));
-            let u = mesh.twin(if moved { prev(mesh.twin(h)) } else { h }) / 3;
-            scratch.claims[(h / 3) as usize] = NONE;
-            scratch.claims[u as usize] = NONE;
-            if scratch.flipped(h / 3).is_none() && scratch.flipped(u).is_none() {
+            if scratch.flipped(h / 3).is_none() && scratch.flipped(g / 3).is_none() {
                 handed.push(h);
             }
             continue;
         }
-        let g = prev(mesh.twin(next(h)));
         for side in [h, g, prev(h), prev(g)] {
-            scratch.claims[(side / 3) as usize] = NONE;
             let mut outer = mesh.twin(side);
             let flipped = scratch.flipped(outer / 3);
             if let Some(edge) = flipped {
@@ -125,7 +121,12 @@ pub fn relink_edges(mesh: &mut GhostMesh, scratch: &mut Scratch, illegal: &[u32]
 }
 
 /// Steps 1 and 2 of a round over every edge of the mesh, or every ghost edge.
-pub fn test_mesh(mesh: &GhostMesh, positions: &[DVec2], hull_alone: bool, scratch: &mut Scratch) -> (Vec<u32>, u64) {
+pub fn test_mesh(
+    mesh: &GhostMesh,
+    positions: &[DVec2],
+    hull_alone: bool,
+    scratch: &mut Scratch,
+) -> (Vec<[u32; 2]>, u64) {
     let edges: Vec<u32> = (0..3 * mesh.slots() as u32).filter(|&h| mesh.twin(h) != NONE && h < mesh.twin(h)).collect();
     test_edges(mesh, positions, &edges, hull_alone, scratch)
 }
@@ -135,10 +136,10 @@ pub fn test_mesh(mesh: &GhostMesh, positions: &[DVec2], hull_alone: bool, scratc
 pub fn advance_edges(
     mesh: &mut GhostMesh,
     positions: &[DVec2],
-    illegal: &[u32],
+    illegal: &[[u32; 2]],
     hull_alone: bool,
     scratch: &mut Scratch,
-) -> (Vec<u32>, u64) {
+) -> (Vec<[u32; 2]>, u64) {
     let handed = relink_edges(mesh, scratch, illegal);
     test_edges(mesh, positions, &handed, hull_alone, scratch)
 }
@@ -148,11 +149,11 @@ pub fn advance_edges(
 pub fn flip_tail(
     mesh: &mut GhostMesh,
     positions: &[DVec2],
-    illegal: &[u32],
+    illegal: &[[u32; 2]],
     hull_alone: bool,
     [least, most]: [usize; 2],
     scratch: &mut Scratch,
-) -> (Vec<u32>, FlipReport) {
+) -> (Vec<[u32; 2]>, FlipReport) {
     let mut illegal = illegal.to_vec();
     let mut report = FlipReport::default();
     let mut limit = least;

@@ -85,8 +85,7 @@ impl Pipeline {
 
         recording.section("dualize");
         let input = dualize::Input { size: *size, colors, pixels, sites };
-        let output = dualize::Output { triangles: mesh.triangles(), links: mesh.links(), slots: mesh.slots() };
-        let dualize = self.dualize.record(recording, input, output, &held.dualize)?;
+        let dualize = self.dualize.record(recording, input, mesh, &held.dualize)?;
 
         recording.section("shift");
         let input = shift::Input { mapping, points, order, pixels, sites };

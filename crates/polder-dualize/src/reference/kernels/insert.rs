@@ -6,8 +6,8 @@
 //! that it got what it claims.
 //!
 //! For each slot there are three words of claims: the least score, the least precedence among points with that score, and
-//! by which point the triangle was split last: four times its number, and 3 if the point lies inside, or else which of its
-//! edges was split.
+//! when the triangle was split last: four times the round, and 3 if the point lies inside, or else which of its edges was
+//! split.
 
 use super::super::certify::before;
 use super::super::key;
@@ -175,14 +175,13 @@ pub fn insert_claim(mesh: &GhostMesh, waiting: &[[u32; 2]], places: &mut [[u32; 
 }
 
 /// Points that got all they claim split it; returns the others, with where their next walks start. Outer edges of what was
-/// split keep the name of their other side. `slots` are the two of each point, `rounds` says when it was inserted.
+/// split keep the name of their other side. `slots` are the two of each point.
 pub fn insert_graft(
     mesh: &mut GhostMesh,
     slots: &[[u32; 2]],
     waiting: &[[u32; 2]],
     places: &mut [[u32; 2]],
     claims: &mut [[u32; 3]],
-    rounds: &mut [u32],
     round: u32,
 ) -> Vec<[u32; 2]> {
     let mut losers = Vec::new();
@@ -199,15 +198,14 @@ pub fn insert_graft(
             continue;
         }
         entry[0] |= WON;
-        rounds[point as usize] = round;
         let [s, u] = slots[point as usize];
         if place & ON_EDGE == 0 {
-            claims[(h / 3) as usize][2] = point << 2 | 3;
+            claims[(h / 3) as usize][2] = round << 2 | 3;
             split_triangle(mesh, h / 3, point, [s, u]);
         } else {
             let g = mesh.twin(h);
             for (side, slot) in [(h, s), (g, u)] {
-                claims[(side / 3) as usize][2] = (point << 2) | (side % 3);
+                claims[(side / 3) as usize][2] = round << 2 | (side % 3);
                 split_side(mesh, side, point, slot);
             }
             mesh.link(h, 3 * u);
@@ -250,7 +248,6 @@ pub fn insert_relink(
     waiting: &[[u32; 2]],
     places: &[[u32; 2]],
     claims: &mut [[u32; 3]],
-    rounds: &[u32],
     round: u32,
     flips: bool,
 ) -> [Vec<u32>; 2] {
@@ -276,7 +273,7 @@ pub fn insert_relink(
         };
         for side in outer {
             let old = mesh.twin(side);
-            let split = renamed(mesh, slots, claims, rounds, round, old);
+            let split = renamed(mesh, claims, round, old);
             match split {
                 Some(new) => mesh.links[(side / 3) as usize][side as usize % 3] = new,
                 None => mesh.link(side, old),
@@ -294,28 +291,18 @@ pub fn insert_relink(
     [edges, hull]
 }
 
-/// The name that half-edge `g` of a triangle split in this round has now; nothing if it was not split.
-fn renamed(
-    mesh: &GhostMesh,
-    slots: &[[u32; 2]],
-    claims: &[[u32; 3]],
-    rounds: &[u32],
-    round: u32,
-    g: u32,
-) -> Option<u32> {
-    let record = claims[(g / 3) as usize][2];
-    if record == NONE || rounds[(record >> 2) as usize] != round {
+/// The name that half-edge `g` of a triangle split in this round has now; nothing if it was not split. The links between the
+/// parts tell where it went.
+fn renamed(mesh: &GhostMesh, claims: &[[u32; 3]], round: u32, g: u32) -> Option<u32> {
+    let split = claims[(g / 3) as usize][2];
+    if split >> 2 != round {
         return None;
     }
-    let ([s, u], k, edge) = (slots[(record >> 2) as usize], g % 3, record & 3);
-    Some(match (edge, k) {
-        (3, 0) => 3 * s + 2,
-        (3, 1) => 3 * u + 2,
-        (0..3, _) if k == (edge + 1) % 3 => {
-            // Of the two sides of the edge, the one whose new other side is in the second slot got the first.
-            let side = g - k + edge;
-            3 * if mesh.twin(side) == 3 * u { s } else { u } + 1
-        }
+    Some(match (split & 3, g % 3) {
+        (3, 0) => mesh.twin(g) + 1,
+        (3, 1) => mesh.twin(g) + 2,
+        // Behind the edge, what is left of the triangle leads to the rest of it.
+        (edge @ 0..3, k) if k == (edge + 1) % 3 => mesh.twin(g) - 1,
         _ => g,
     })
 }
