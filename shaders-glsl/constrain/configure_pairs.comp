@@ -1,6 +1,6 @@
-// The pairs that may be flipped because a triangle of them got its owner in this outer round: they join those that are left
-// from the inner rounds before. All triangles are looked at, so that pairs are listed in the order of triangles: those nearby
-// are worked on together in all rounds after. Also sums up what pieces of walks crossed.
+// The pairs that may be flipped because a triangle of them got an owner that goes by flips in this outer round: they join those that
+// are left from the inner rounds before. All triangles are looked at, so that pairs are listed in the order of triangles: those nearby
+// are worked on together in all rounds after.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "insert.glsl"
@@ -12,14 +12,11 @@ layout(push_constant, std430) uniform Args {
     ReadRows links;
     ReadPoints positions;
     U32 state;
-    ReadU32x4 pieces;
-    ReadU32 piece_count;
-    ReadU32 piece_walked;
+    ReadU32 lost;
     U32x2 pairs; // of even rounds, then of odd ones
     U32 words;
     uint stride;
     uint slots;
-    uint piece_limit;
 };
 
 // Triangles that a workgroup takes at once, and those of them that got their owner.
@@ -47,14 +44,6 @@ void main() {
     uint parity = round & 1u;
     bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
     uint end = fails || words.at[MARKED] == 0u ? 0u : slots;
-    uint piece_end = end == 0u ? 0u : min(piece_count.at[0], piece_limit);
-    for (uint p = item_index(); p < piece_end; p += item_stride()) {
-        uvec4 piece = pieces.at[p];
-        // What is behind the first piece that came to the end is superfluous.
-        if (piece_number(piece) <= pieces.at[first_piece(piece, p)].w) {
-            add_wide(words, WALKED, piece_walked.at[p]);
-        }
-    }
     // Before the first round nothing was owned.
     uint turns = words.at[OUTER] == 0u ? 1u : 3u;
     uint rank = gl_LocalInvocationIndex;
@@ -65,7 +54,8 @@ void main() {
         }
         barrier();
         for (uint i = begin + rank; i < min(begin + BLOCK, end); i += WORKGROUP) {
-            if (state.at[OWNED(i)] != FREE && is_new(i, round)) {
+            uint word = state.at[OWNED(i)];
+            if (word != FREE && is_new(i, round) && (lost.at[owner_of(word)] & BY_FLIPS) != 0u) {
                 new_ones[atomicAdd(new_count, 1u)] = i;
             }
         }

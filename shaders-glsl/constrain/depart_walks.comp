@@ -85,9 +85,12 @@ void main() {
             if (at_hub) {
                 uint edge = h % 3u;
                 uint mine = scatter(s, OWNER_BITS) << 4;
-                own(state, lost, words, s, mine | (reversed ? NO_EDGE << 2 | edge : edge << 2 | NO_EDGE), h / 3u, stamp, false);
+                own(state, lost, words, s, mine | (reversed ? NO_EDGE << 2 | edge : edge << 2 | NO_EDGE), h / 3u, stamp, false, true);
             }
             firsts.at[s] = h | (reversed ? REVERSED : 0u);
+            if (!reversed) {
+                atomicOr(lost.at[s], h / 3u << LOW_SHIFT);
+            }
         } else {
             firsts.at[s] = NONE;
             if (event == ALONG && destination(triangles, h) == to) {

@@ -37,7 +37,7 @@ const uint INNER_LIMIT = 4u;
 const uint STUCK = 5u;
 // Walkers of this outer round.
 const uint WALKERS = 8u;
-// Whether any triangle got its owner in this outer round.
+// Whether any walker of this outer round goes by flips.
 const uint MARKED = 6u;
 // Those of them that do walk: who leaves a hub may have to wait.
 const uint ADMITTED = 7u;
@@ -65,6 +65,7 @@ const uint HELD = 19u;
 const uint HELD_ROUND = 38u;
 // What is reported; sums have two words, the low one first.
 const uint EDGES_ALREADY = 20u;
+const uint REBUILT = 39u;
 const uint INTERSECTIONS = 22u;
 const uint WALKED = 24u;
 const uint OUTER_ROUNDS = 26u;
@@ -80,11 +81,17 @@ const uint THROUGH_VERTEX = 1u;
 const uint ASTRAY = 2u;
 
 // What there is to know of a sub-constraint, in `lost`: whether it does not own its whole chain, whether it begins at a hub,
-// and whether it does not walk in this round: it has to wait there, or is an edge. And in `firsts`: the half-edge that it
-// crosses first, with REVERSED if it begins at its second end; NONE if it is in.
+// whether it does not walk in this round, since it has to wait there or is an edge, and whether it goes by flips, as all do that
+// begin at hubs; above, once it walks, the triangle at its lower end. Or DONE, if it has become an edge and did not go by flips,
+// from the outer round after on. And in `firsts`: the half-edge that it crosses first, with REVERSED if it begins at its second
+// end; NONE if it is in.
 const uint LOSES = 1u;
 const uint AT_HUB = 2u;
 const uint BARRED = 4u;
+const uint LONG = 8u;
+const uint BY_FLIPS = AT_HUB | LONG;
+#define LOW_SHIFT 4
+const uint DONE = 0xfffffff0u;
 const uint REVERSED = 0x80000000u;
 
 // The word of a triangle that nobody owns, and no edge in the word of one that somebody does: `place` of the reference.
@@ -102,7 +109,7 @@ const uint LISTED = 3u;
 
 // State is four words a triangle, all NONE at first: the least key that claims it, in even and in odd rounds, else NONE; its
 // stamp, four times the last round that flipped or listed it, plus the edge along which it was flipped, or LISTED, all
-// inverted; and whose it is.
+// inverted; and whose it is. What one that is DONE owned stays its own until another one claims it.
 #define CLAIM(T, PARITY) (4u * (T) + (PARITY))
 #define STAMP(T) (4u * (T) + 2u)
 #define OWNED(T) (4u * (T) + 3u)

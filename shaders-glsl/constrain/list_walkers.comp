@@ -48,7 +48,7 @@ void main() {
             uint spoke = spokes.at[reversed ? ends.y : ends.x];
             uint h = edge_to(spoke, reversed ? ends.x : ends.y, most, triangles, ReadRows(links));
             walks = h == NONE;
-            lost.at[s] = 0u;
+            lost.at[s] = walks ? 0u : DONE;
             if (walks) {
                 for (uint k = 0u; k < 2u; k++) {
                     if (counts.at[ends[k]] < crowd) {
@@ -65,7 +65,9 @@ void main() {
             uint known = lost.at[s];
             walks = (known & LOSES) != 0u;
             if (walks) {
-                lost.at[s] = known & AT_HUB;
+                lost.at[s] = known & BY_FLIPS;
+            } else if ((known & (BY_FLIPS | BARRED)) == 0u && known != DONE) {
+                lost.at[s] = DONE;
             }
         }
         uint place = place_in(words, WALKERS, walks);

@@ -16,12 +16,13 @@ layout(push_constant, std430) uniform Args {
     ReadU32 runs; // by walker: where its later pieces stand, or NONE
     U32x4 pieces;
     ReadU32 piece_count;
-    WriteU32 piece_walked; // by later piece, the triangles that it crossed
+    WriteU32 piece_walked; // by later piece, the triangles that it crossed; then, by the first of them, those of the one before
     U32 lost;
     U32 state; // of which the stamps say who got its owner in this round
     U32 words;
     uint stride;
     uint piece_limit;
+    uint longest; // chains of more triangles go by flips
 };
 
 shared uint walked;
@@ -32,9 +33,6 @@ void main() {
     uint stamp = words.at[ROUND] << 2 | LISTED;
     if (gl_LocalInvocationIndex == 0u) {
         walked = 0u;
-    }
-    if (item_index() == 0u && count != 0u) {
-        words.at[MARKED] = 1u;
     }
     barrier();
     uint sum = 0u;
@@ -87,6 +85,7 @@ void main() {
             uint fault = ASTRAY;
             bool owns = !later;
             bool has_lost = false;
+            bool by_flips = (lost.at[s] & BY_FLIPS) != 0u;
             // No walk crosses an edge twice.
             uint most = 2u * stride;
             for (uint step = 0u; step < most; step++) {
@@ -94,7 +93,7 @@ void main() {
                 if (owns) {
                     uint edge = h % 3u;
                     uint word = mine | (reversed ? entered << 2 | edge : edge << 2 | entered);
-                    has_lost = own(state, lost, words, s, word, h / 3u, stamp, has_lost);
+                    has_lost = own(state, lost, words, s, word, h / 3u, stamp, has_lost, by_flips);
                     steps++;
                     if (h == until) {
                         fault = NONE;
@@ -114,9 +113,12 @@ void main() {
                 int side = orient2d(a, b, point_at(positions, w));
                 if (side == 0) {
                     uint word = mine | (reversed ? entered << 2 | NO_EDGE : NO_EDGE << 2 | entered);
-                    has_lost = own(state, lost, words, s, word, g / 3u, stamp, has_lost);
+                    has_lost = own(state, lost, words, s, word, g / 3u, stamp, has_lost, by_flips);
                     steps++;
                     fault = w == ends.y ? NONE : THROUGH_VERTEX;
+                    if (reversed) {
+                        atomicOr(lost.at[s], g / 3u << LOW_SHIFT);
+                    }
                     if (run != NONE) {
                         atomicMin(pieces.at[run].w, number);
                     }
@@ -132,6 +134,11 @@ void main() {
             piece_walked.at[i - count] = steps;
         } else {
             sum += steps;
+            if (run != NONE) {
+                piece_walked.at[piece_limit + run] = steps;
+            } else if (steps > longest) {
+                atomicOr(lost.at[s], LONG);
+            }
         }
     }
     atomicAdd(walked, sum);

@@ -9,9 +9,9 @@ mod vulkan_support;
 
 use constrain_support::Start;
 use glam::DVec2;
-use polder_constrain::gpu::insert::{Counts, Input, Stage};
+use polder_constrain::gpu::insert::{Counts, Input, Rounds, Stage};
 use polder_constrain::gpu::pieces::{self, Grid};
-use polder_constrain::reference::{self, Insertion};
+use polder_constrain::reference::{self, Insertion, LONGEST_REBUILT};
 use polder_constrain::{ConstrainError, Fault, InsertReport};
 use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_mesh::GhostMesh;
@@ -35,8 +35,7 @@ struct Case<'a> {
     sub_constraints: &'a [[u32; 2]],
 }
 
-/// Rounds: inner ones to an outer one, and outer ones.
-fn run(gpu: &mut Gpu, stage: &Stage, case: &Case<'_>, rounds: Option<[u32; 2]>) -> (Counts, GhostMesh) {
+fn run(gpu: &mut Gpu, stage: &Stage, case: &Case<'_>, rounds: Rounds) -> (Counts, GhostMesh) {
     let mesh = Mesh::with_slots(&gpu.device, case.positions.len(), case.mesh.slots()).unwrap();
     mesh.upload(&mut gpu.engine, case.mesh, case.positions).unwrap();
     let count = case.sub_constraints.len();
@@ -59,23 +58,29 @@ fn run(gpu: &mut Gpu, stage: &Stage, case: &Case<'_>, rounds: Option<[u32; 2]>) 
         let sow = pieces::Stage::new(&gpu.device, Arithmetic::Integers).unwrap();
         sow.record_seeds(&mut recording, &mesh, spokes, grid, &list).unwrap();
     }
-    let read = match rounds {
-        None => stage.record(&mut recording, &mesh, &buffers, input),
-        Some([inner, outer]) => stage.record_rounds(&mut recording, &mesh, &buffers, input, inner, outer),
-    };
+    let read = stage.record_rounds(&mut recording, &mesh, &buffers, input, rounds);
     let report = gpu.run(&recording);
     let counts = read.unwrap().counts(&report);
     (counts, mesh.download(&mut gpu.engine).unwrap())
 }
 
-fn assert_inserted(gpu: &mut Gpu, stage: &Stage, name: &str, case: &Case<'_>) -> InsertReport {
+/// With the chains of up to so many triangles rebuilt.
+fn assert_inserted(gpu: &mut Gpu, stage: &Stage, name: &str, case: &Case<'_>, longest: u32) -> InsertReport {
     let mut expected = case.mesh.clone();
-    let report = reference::insert(&mut expected, case.positions, case.sub_constraints).unwrap();
-    let (counts, mesh) = run(gpu, stage, case, None);
-    assert_eq!(counts, Counts { report, inserted: report.sub_constraints, fault: None }, "{name}");
-    assert!(mesh == expected, "{name}: {report}");
+    let mut insertion = Insertion::new(&mut expected, case.positions, case.sub_constraints).unwrap();
+    insertion.set_longest_rebuilt(longest);
+    while !insertion.is_done() {
+        insertion.outer_round().unwrap();
+    }
+    let report = insertion.report();
+    let (counts, mesh) = run(gpu, stage, case, Rounds { longest, ..Rounds::default() });
+    assert_eq!(counts, Counts { report, inserted: report.sub_constraints, fault: None }, "{name}, {longest}");
+    assert!(mesh == expected, "{name}, {longest}: {report}");
     report
 }
+
+/// Flips alone, some of both, and as it is done.
+const LONGEST: [u32; 4] = [0, 3, 9, LONGEST_REBUILT];
 
 /// Families, with all their constraints cut.
 fn starts(count: usize, seed: u64) -> Vec<(&'static str, Start, Vec<[u32; 2]>)> {
@@ -94,16 +99,21 @@ fn starts(count: usize, seed: u64) -> Vec<(&'static str, Start, Vec<[u32; 2]>)> 
 #[test]
 fn every_family() {
     let (mut gpu, stages) = stages();
-    let mut flips = 0;
+    let mut sums = [0; 2];
     for (size, seed) in [(30, 1), (300, 2), (2000, 3)] {
         for (turn, (name, start, subs)) in starts(size, seed).iter().enumerate() {
             let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: subs };
-            for stage in if size < 1000 { &stages[..] } else { &stages[turn % 2..][..1] } {
-                flips += assert_inserted(&mut gpu, stage, name, &case).all_flips();
+            // Half of the numbers by either arithmetic; of large inputs, one by each.
+            let step = if size < 1000 { 2 } else { 4 };
+            for (which, stage) in stages.iter().enumerate() {
+                for longest in LONGEST.into_iter().skip(which + turn / 2 % 2 * 2 * (step / 4)).step_by(step) {
+                    let report = assert_inserted(&mut gpu, stage, name, &case, longest);
+                    sums = [sums[0] + report.all_flips(), sums[1] + report.rebuilt];
+                }
             }
         }
     }
-    assert!(flips > 1000, "{flips}");
+    assert!(sums.iter().all(|&sum| sum > 1000), "{sums:?}");
 }
 
 /// The mesh after each inner round of the first outer one, and after each outer round.
@@ -113,10 +123,13 @@ fn round_by_round() {
     let mut compared = 0;
     for (turn, (name, start, subs)) in starts(700, 4).iter().enumerate() {
         let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: subs };
-        for [inner, outer] in [[1, 1], [2, 1], [3, 1], [5, 1], [1, 2], [1, 3], [2, 4], [8, 2], [3, 5]] {
+        let rounds = [[1, 1], [2, 1], [3, 1], [5, 1], [1, 2], [1, 3], [2, 4], [8, 2], [3, 5]];
+        for (i, [inner, outer]) in rounds.into_iter().enumerate() {
+            let longest = LONGEST[(turn + i) % 4];
             let mut expected = start.mesh.clone();
             let mut insertion = Insertion::new(&mut expected, &start.positions, subs).unwrap();
             insertion.set_inner_rounds(inner);
+            insertion.set_longest_rebuilt(longest);
             for _ in 0..outer {
                 if !insertion.is_done() {
                     insertion.outer_round().unwrap();
@@ -126,9 +139,9 @@ fn round_by_round() {
                 continue;
             }
             let report = insertion.report();
-            let (counts, mesh) = run(&mut gpu, &stages[turn % 2], &case, Some([inner, outer]));
-            assert_eq!(counts.report, report, "{name}: {inner} {outer}");
-            assert!(mesh == expected, "{name}: {inner} {outer}");
+            let (counts, mesh) = run(&mut gpu, &stages[turn % 2], &case, Rounds { inner, outer, longest });
+            assert_eq!(counts.report, report, "{name}: {inner} {outer} {longest}");
+            assert!(mesh == expected, "{name}: {inner} {outer} {longest}");
             compared += 1;
         }
     }
@@ -147,7 +160,7 @@ fn crossings_end_as_blocked() {
         let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
         let mut expected = start.mesh.clone();
         let error = reference::insert(&mut expected, &start.positions, &subs);
-        let (counts, mesh) = run(&mut gpu, &stages[seed as usize % 2], &case, None);
+        let (counts, mesh) = run(&mut gpu, &stages[seed as usize % 2], &case, Rounds::default());
         match error {
             Ok(report) => assert_eq!(counts.report, report),
             Err(ConstrainError::Blocked { sub_constraint, .. }) => {
@@ -176,7 +189,7 @@ fn any_order_gives_one_flipped_mesh() {
                 subs.sort_by_key(|s| polder_flip::priority(s[0].wrapping_mul(977) ^ s[1] ^ order));
             }
             let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
-            let (counts, mut mesh) = run(&mut gpu, &stages[turn % 2], &case, None);
+            let (counts, mut mesh) = run(&mut gpu, &stages[turn % 2], &case, Rounds::default());
             assert_eq!((counts.inserted, counts.fault), (subs.len() as u64, None), "{name}");
             polder_flip::reference::flip(&mut mesh, &start.positions).unwrap();
             let names: Vec<u32> = (0..start.positions.len() as u32).collect();
@@ -195,7 +208,9 @@ fn sizes_around_nothing_and_a_workgroup() {
         let walk = reference::walk(&start.mesh, &start.positions, &start.constraints).unwrap();
         let subs = walk.sub_constraints;
         let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
-        assert_inserted(&mut gpu, &stages[count % 2], "segments", &case);
+        for longest in LONGEST {
+            assert_inserted(&mut gpu, &stages[count % 2], "segments", &case, longest);
+        }
     }
 }
 
@@ -225,7 +240,7 @@ fn assert_bad_case(gpu: &mut Gpu, stage: &Stage, k: usize) {
     let chain = reference::triangle_chain(&start, &positions, ends).unwrap();
     let length = chain.triangles.len() as u64;
     let case = Case { mesh: &start, positions: &positions, sub_constraints: &[ends] };
-    let report = assert_inserted(gpu, stage, "bad case", &case);
+    let report = assert_inserted(gpu, stage, "bad case", &case, 0);
     assert!(k < 5 || report.flips[2] >= (k * k) as u64, "{report}");
     assert!(report.all_flips() <= length * length && report.inner_rounds <= 4 * length, "{report}");
 }
@@ -255,7 +270,7 @@ fn a_fan() {
     let start = Start::stage_4(&polder_io::generate::fan(1200, 5));
     let walk = reference::walk(&start.mesh, &start.positions, &start.constraints).unwrap();
     let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &walk.sub_constraints };
-    let report = assert_inserted(&mut gpu, &stages[0], "fan", &case);
+    let report = assert_inserted(&mut gpu, &stages[0], "fan", &case, LONGEST_REBUILT);
     assert!(report.outer_rounds < 40 && report.inner_rounds > 8 * report.outer_rounds, "{report}");
     assert!(report.walked < walk.intersections(), "{report}, walked {}", report.walked);
 }

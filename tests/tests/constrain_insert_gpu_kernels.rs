@@ -1,4 +1,4 @@
-//! Each kernel of stage 6 that flips pairs against the reference of its name.
+//! Each kernel of stage 6 that rebuilds chains or flips pairs against the reference of its name.
 #![cfg(feature = "gpu-tests")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -12,25 +12,69 @@ use polder_constrain::reference::kernels;
 use vulkan_support::Gpu;
 
 #[test]
+fn rebuild_chains() {
+    let mut gpu = Gpu::open();
+    let (mut all, mut flips) = (0, [0; 2]);
+    for case in cases() {
+        for longest in [case.longest, 62] {
+            let mut case = Case { longest, ..case.clone() };
+            let waiting = case.takes.clone();
+            let (walkers, marked) = case.walk();
+            let on = On::new(&mut gpu, &case, &[(WALKERS, waiting.len() as u32)]);
+            gpu.engine.upload(on.walkers.slice(0..waiting.len()).unwrap(), &waiting).unwrap();
+            let barred: Vec<u32> = waiting.iter().copied().filter(|s| !walkers.contains(s)).collect();
+            gpu.engine.upload(on.lost.view(), &case.known(&marked.losers, &barred)).unwrap();
+            let arguments = RebuildChainsArgs {
+                triangles: on.mesh.corners(),
+                links: on.mesh.twins(),
+                positions: on.mesh.positions().cast(),
+                walkers: on.walkers.view(),
+                runs: on.runs.view(),
+                pieces: on.pieces.view(),
+                piece_count: on.piece_count.view(),
+                piece_walked: on.piece_walked.view(),
+                lost: on.lost.view(),
+                state: on.state.view().cast(),
+                spokes: on.spokes.view(),
+                degrees: on.degrees.view(),
+                words: on.words.view(),
+                piece_limit: 1,
+                longest,
+            };
+            run::<RebuildChains>(&mut gpu, EXACT, 2, &arguments);
+            let rebuilt = case.rebuild(&walkers, &marked.losers);
+            let by_flips = walkers.iter().any(|&s| case.begun[s as usize].by_flips());
+            assert_eq!([INSERTED, REBUILT].map(|word| on.word(&mut gpu, word)), [rebuilt; 2], "{}", case.name);
+            assert_eq!(on.word(&mut gpu, MARKED), u32::from(by_flips));
+            assert_eq!(on.word(&mut gpu, DEPART_FAULT + 1), NONE);
+            on.assert_spokes(&mut gpu, &case);
+            on.assert_state(&mut gpu, &case, case.scratch.round as usize & 1);
+            all += rebuilt;
+            flips[usize::from(by_flips)] += 1;
+        }
+    }
+    assert!(all > 200 && flips.iter().all(|&n| n > 3), "{all} {flips:?}");
+}
+
+#[test]
 fn configure_pairs() {
     let mut gpu = Gpu::open();
     let mut pairs = 0;
     for mut case in cases() {
-        let marked = case.walk().1.triangles;
+        let (walkers, marked) = case.walk();
+        case.rebuild(&walkers, &marked.losers);
+        let marked = marked.triangles;
         let on = On::new(&mut gpu, &case, &[(MARKED, 1), (OUTER, case.scratch.round)]);
         let arguments = ConfigurePairsArgs {
             triangles: on.mesh.corners(),
             links: on.mesh.twins(),
             positions: on.mesh.positions().cast(),
             state: on.state.view().cast(),
-            pieces: on.pieces.view(),
-            piece_count: on.piece_count.view(),
-            piece_walked: on.piece_walked.view(),
+            lost: on.lost.view(),
             pairs: on.pairs.view().cast(),
             words: on.words.view(),
             stride: on.stride as u32,
             slots: case.start.mesh.slots() as u32,
-            piece_limit: 1,
         };
         run::<ConfigurePairs>(&mut gpu, EXACT, 2, &arguments);
         case.configure(&marked);
@@ -48,7 +92,9 @@ fn configure_pairs() {
 /// The cases with pairs to be flipped.
 fn with_pairs() -> impl Iterator<Item = Case> {
     cases().into_iter().map(|mut case| {
-        let marked = case.walk().1.triangles;
+        let (walkers, marked) = case.walk();
+        case.rebuild(&walkers, &marked.losers);
+        let marked = marked.triangles;
         case.configure(&marked);
         case
     })

@@ -2,11 +2,12 @@
 //!
 //! As in \[QCT\] 5.1 constraints go into the Delaunay triangulation of the points, and flips are those that make them edges
 //! and those that make the result constrained Delaunay. The triangulation is that of the CPU backend, the rest is that of the
-//! references, whose flips are those of the kernels, one by one.
+//! references: of chains that are short enough to be rebuilt as well.
 
-use polder_constrain::reference;
+use glam::DVec2;
+use polder_constrain::{ConstrainError, InsertReport, reference};
 use polder_cpu::Delaunay;
-use polder_mesh::{Monitor, Pslg};
+use polder_mesh::{GhostMesh, Monitor, Pslg};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -53,8 +54,7 @@ impl Sample {
         for i in 0..ends.len() {
             *distribution.entry(walk.pieces(i).iter().map(of_piece).sum()).or_default() += 1;
         }
-        let inserted =
-            reference::insert(&mut mesh, &positions, &walk.sub_constraints).map_err(|error| error.to_string())?;
+        let inserted = by_flips(&mut mesh, &positions, &walk.sub_constraints).map_err(|error| error.to_string())?;
         let restored = polder_flip::reference::flip(&mut mesh, &positions).map_err(|error| error.to_string())?;
         Ok(Self {
             set: set.to_owned(),
@@ -68,6 +68,20 @@ impl Sample {
             distribution,
         })
     }
+}
+
+/// Insertion by flips alone, short chains as well.
+fn by_flips(
+    mesh: &mut GhostMesh,
+    positions: &[DVec2],
+    sub_constraints: &[[u32; 2]],
+) -> Result<InsertReport, ConstrainError> {
+    let mut insertion = reference::Insertion::new(mesh, positions, sub_constraints)?;
+    insertion.set_longest_rebuilt(0);
+    while !insertion.is_done() {
+        insertion.outer_round()?;
+    }
+    Ok(insertion.report())
 }
 
 /// The constraints as pairs of vertices; `of` says which point stands for each, and `names` which point each vertex is.

@@ -3,7 +3,7 @@ use std::fmt;
 /// What an insertion did and cost.
 ///
 /// The text form is one line, for instance `4 sub-constraints (1 an edge already), 30 intersections, 2 outer and 9
-/// inner rounds, flips 20 + 1 + 3`.
+/// inner rounds, 0 chains rebuilt, flips 20 + 1 + 3`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct InsertReport {
     /// Sub-constraints, all of which are constrained edges now.
@@ -18,7 +18,9 @@ pub struct InsertReport {
     pub outer_rounds: u64,
     /// Inner rounds, of all outer rounds together.
     pub inner_rounds: u64,
-    /// Flips by case 1, 2 and 3.
+    /// Sub-constraints that were inserted by rebuilding the triangles of their chains.
+    pub rebuilt: u64,
+    /// Flips by case 1, 2 and 3, for the others.
     pub flips: [u64; 3],
 }
 
@@ -34,7 +36,7 @@ impl fmt::Display for InsertReport {
         let [one, two, three] = self.flips;
         write!(f, "{} sub-constraints ({} edges already), ", self.sub_constraints, self.edges_already)?;
         write!(f, "{} intersections, {} outer and ", self.intersections, self.outer_rounds)?;
-        write!(f, "{} inner rounds, flips {one} + {two} + {three}", self.inner_rounds)
+        write!(f, "{} inner rounds, {} chains rebuilt, flips {one} + {two} + {three}", self.inner_rounds, self.rebuilt)
     }
 }
 

@@ -17,7 +17,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "43b58a3e1b2d5696c55e1b0c18151fa193066f7af52e767f0d7c50b5a5e4e704";
+    source "f4635a8a3bb356148782ee4f40df78649aef7ef044ca84a715787b67e7827cfb";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -41,7 +41,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "26d504af40796c00c24866dc99d95a3d2f213733ddf474ec78ca56a0bfc80e94";
+    source "e6ab1be1dbef2b592446a6671ffc02e6195e16c1b10ea9e25c6145e15f2cd145";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -74,32 +74,29 @@ define_kernel! {
 }
 
 define_kernel! {
-    /// The pairs that may be flipped because a triangle of them got its owner in this outer round: they join those that are left
-    /// from the inner rounds before. All triangles are looked at, so that pairs are listed in the order of triangles: those nearby
-    /// are worked on together in all rounds after. Also sums up what pieces of walks crossed.
+    /// The pairs that may be flipped because a triangle of them got an owner that goes by flips in this outer round: they join those that
+    /// are left from the inner rounds before. All triangles are looked at, so that pairs are listed in the order of triangles: those nearby
+    /// are worked on together in all rounds after.
     ConfigurePairs(ConfigurePairsArgs) = "configure_pairs" and "configure_pairs.integers";
     buffers {
         0: far_read triangles: View<'a, u32>,
         8: far_read links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
-        32: read pieces: View<'a, [u32; 4]>,
-        40: read piece_count: View<'a, u32>,
-        48: read piece_walked: View<'a, u32>,
-        56: both pairs: View<'a, [u32; 2]>,
-        64: both words: View<'a, u32>,
+        32: read lost: View<'a, u32>,
+        40: both pairs: View<'a, [u32; 2]>,
+        48: both words: View<'a, u32>,
     }
     values {
-        72: stride: u32,
-        76: slots: u32,
-        80: piece_limit: u32,
+        56: stride: u32,
+        60: slots: u32,
     }
-    argument_bytes 84;
+    argument_bytes 64;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "22c7488ab47de0ed9565db3d9afdca7c090878fd09cbf0a3f80d6ba545960557";
+    source "44901f4dbcb095d83bff2b6c593817eade859ca5a6e7028f2d1e9efb022e5e04";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -157,7 +154,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "07383cecd3022fd2f03c860b97886f3b0b413decec75ddc3cc58dfa9e61d30a6";
+    source "2549f3ddad4665fc43be4d0bb414b609325aab510b24ff0f4e04c75ca41aae02";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -268,7 +265,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "622bd0fc8c10f766c4530f271814a6c066b6df47b196903569878e18575c4388";
+    source "ad804ab5d458958304ff9e9afcd161e5d67cda322452c13fd0acc199ea964583";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -322,7 +319,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "b8cdfda4182a488b124172d9663d9d02aa4323c0fcd977d5393df91c73da2a4b";
+    source "9766220ead06c963db45cbdafaf23ba9fd5b0f08ab926282d4122145dbe90623";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -349,12 +346,13 @@ define_kernel! {
     values {
         104: stride: u32,
         108: piece_limit: u32,
+        112: longest: u32,
     }
-    argument_bytes 112;
+    argument_bytes 116;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "355e5a79cc88be0035196927f3419dd1464907606270660ae7f454051c0e9172";
+    source "ad58145cacb243a554065581274369cf6f4a7474b8fae063bdf553a3e098f726";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -428,7 +426,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "54d5cad681bf7c780f34fa1cc04ed441f28824a2f90069ec9cf84ffe2178fdd0";
+    source "e04504fd42a96a3e36725072f08a24ba1ff9238985165c5323de0f57854bf7f2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -509,6 +507,42 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
     source "5174fcc00417951d890c81d9b7fc83fc62a295d3b5bf3cac017609ccfa062ece";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
+    /// Step 4 of an outer round: of each walker that owns its whole chain, if that is short, the triangles are replaced at once; the
+    /// walker becomes an edge. `rebuild` of the reference. Those whose chains are too long are told here, and go by flips from then
+    /// on. Also sums up what pieces of walks crossed.
+    ///
+    /// One invocation goes through a chain. On either side of the walker it keeps a stack of the vertices that could not be cut off
+    /// yet. Where a neighbor is rebuilt in this dispatch as well, by whichever invocation, half-edges on both sides of their edge
+    /// get new names: who comes first leaves the new name, and who comes second joins the two.
+    RebuildChains(RebuildChainsArgs) = "rebuild_chains" and "rebuild_chains.integers";
+    buffers {
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
+        16: read positions: View<'a, [u32; 4]>,
+        24: read walkers: View<'a, u32>,
+        32: read runs: View<'a, u32>,
+        40: read pieces: View<'a, [u32; 4]>,
+        48: read piece_count: View<'a, u32>,
+        56: read piece_walked: View<'a, u32>,
+        64: both lost: View<'a, u32>,
+        72: both state: View<'a, u32>,
+        80: both spokes: View<'a, u32>,
+        88: both degrees: View<'a, u32>,
+        96: both words: View<'a, u32>,
+    }
+    values {
+        104: piece_limit: u32,
+        108: longest: u32,
+    }
+    argument_bytes 112;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
+    capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "fb2b6ee97201d5ff37c2165e773a3d465bbb9c63783556aaf94fba9f88285f29";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

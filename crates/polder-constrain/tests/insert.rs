@@ -23,9 +23,19 @@ fn some_mesh(positions: &[DVec2], seed: u32) -> GhostMesh {
     mesh
 }
 
-fn insert_all(mesh: &mut GhostMesh, positions: &[DVec2], constraints: &[[u32; 2]]) -> InsertReport {
+/// With another number of triangles of the longest chain that is rebuilt; by flips alone with 0.
+fn insert_with(longest: u32, mesh: &mut GhostMesh, positions: &[DVec2], subs: &[[u32; 2]]) -> InsertReport {
+    let mut insertion = Insertion::new(mesh, positions, subs).unwrap();
+    insertion.set_longest_rebuilt(longest);
+    while !insertion.is_done() {
+        insertion.outer_round().unwrap();
+    }
+    insertion.report()
+}
+
+fn insert_all(longest: u32, mesh: &mut GhostMesh, positions: &[DVec2], constraints: &[[u32; 2]]) -> InsertReport {
     let walk = reference::walk(mesh, positions, constraints).unwrap();
-    let report = reference::insert(mesh, positions, &walk.sub_constraints).unwrap();
+    let report = insert_with(longest, mesh, positions, &walk.sub_constraints);
     assert_eq!(report.intersections, walk.intersections());
     assert_eq!(constrained_edges(mesh), walk.sub_constraints);
     report
@@ -37,14 +47,14 @@ proptest! {
     #[test]
     fn makes_every_sub_constraint_an_edge((positions, constraints) in grid(8, 60, 40), seed: u32) {
         let mut mesh = some_mesh(&positions, seed);
-        insert_all(&mut mesh, &positions, &constraints);
+        insert_all(seed % 12, &mut mesh, &positions, &constraints);
         prop_assert_eq!(check_triangulation(&mesh, &positions), Ok(()));
         flip(&mut mesh, &positions).unwrap();
         prop_assert_eq!(check_delaunay(&mesh, &positions), Ok(()));
     }
 
     /// The result does not depend on the triangulation at the start, the order and direction of the constraints, the
-    /// number of inner rounds, or whether it was made Delaunay before.
+    /// number of inner rounds, which chains are rebuilt, or whether it was made Delaunay before.
     #[test]
     fn one_result_from_everywhere((positions, constraints) in grid(7, 50, 30), seed: u32) {
         let mut first = delaunay(&positions);
@@ -62,6 +72,7 @@ proptest! {
         let walk = reference::walk(&second, &positions, &shuffled).unwrap();
         let mut insertion = Insertion::new(&mut second, &positions, &walk.sub_constraints).unwrap();
         insertion.set_inner_rounds(1 + seed % 12);
+        insertion.set_longest_rebuilt(seed / 12 % 12);
         while !insertion.is_done() {
             insertion.outer_round().unwrap();
         }
@@ -90,7 +101,7 @@ proptest! {
         let mut together = 0;
         for s in &walk.sub_constraints {
             let k = triangle_chain(&mesh, &positions, *s).unwrap().triangles.len() as u64;
-            let report = reference::insert(&mut mesh, &positions, std::slice::from_ref(s)).unwrap();
+            let report = insert_with(0, &mut mesh, &positions, std::slice::from_ref(s));
             prop_assert!(report.flips[0] <= k && report.flips[1] <= k, "{report}");
             prop_assert!(report.flips[2] <= k * k / 2, "{k}: {report}");
             together += report.all_flips();
@@ -104,6 +115,7 @@ proptest! {
 fn follow(mesh: &mut GhostMesh, positions: &[DVec2], one: &[[u32; 2]], trial: Trial) -> Result<u32, String> {
     let mut insertion = Insertion::new(mesh, positions, one).unwrap();
     insertion.set_trial(trial);
+    insertion.set_longest_rebuilt(0);
     insertion.mark().unwrap();
     let measure = |i: &Insertion<'_>| triangle_chain(i.mesh(), positions, one[0]).unwrap().measure();
     let mut before = measure(&insertion);
@@ -165,6 +177,7 @@ fn claims_2_and_3_need_the_look_ahead() {
         let k = triangle_chain(&mesh, &positions, [0, 1]).unwrap().triangles.len() as u64;
         let mut insertion = Insertion::new(&mut mesh, &positions, &[[0, 1]]).unwrap();
         insertion.set_trial(Trial { blind: true, single_file: true });
+        insertion.set_longest_rebuilt(0);
         insertion.mark().unwrap();
         while !insertion.is_done() && insertion.report().all_flips() <= 100 * 100 {
             insertion.inner_round();
@@ -183,7 +196,7 @@ fn the_bad_case_for_any_k() {
         let chain = triangle_chain(&mesh, &positions, ends).unwrap();
         assert_eq!(chain.to_string(), format!("0{}{}0", "2".repeat(2 * k - 1), "1".repeat(4 * k)));
         let length = chain.triangles.len() as u64;
-        let report = reference::insert(&mut mesh, &positions, &[ends]).unwrap();
+        let report = insert_with(0, &mut mesh, &positions, &[ends]);
         check_triangulation(&mesh, &positions).unwrap();
         assert_eq!(constrained_edges(&mesh), [ends]);
         // It is bad: quadratic in flips by case 3, linear in rounds; and no worse than that.
@@ -242,6 +255,7 @@ fn text_forms() {
     let walk = reference::walk(&mesh, &positions, &[[1, 0], [3, 4]]).unwrap();
     let mut text = format!("{mesh}\n{walk}\n");
     let mut insertion = Insertion::new(&mut mesh, &positions, &walk.sub_constraints).unwrap();
+    insertion.set_longest_rebuilt(0);
     insertion.mark().unwrap();
     while !insertion.is_done() {
         text += &format!("chain {}\n", triangle_chain(insertion.mesh(), &positions, [0, 1]).unwrap());

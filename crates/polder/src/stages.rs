@@ -159,6 +159,7 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
             ("intersections", insertion.intersections),
             ("rounds", insertion.inner_rounds),
             ("outer_rounds", insertion.outer_rounds),
+            ("rebuilt", insertion.rebuilt),
             ("flips", insertion.all_flips()),
         ],
     );

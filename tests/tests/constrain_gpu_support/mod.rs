@@ -15,6 +15,7 @@ pub const NONE: u32 = u32::MAX;
 pub const EXACT: &[(&str, u32)] = &[("ARITHMETIC", 1)];
 /// Places of words, as in `insert.glsl`.
 pub const INSERTED: usize = 1;
+pub const REBUILT: usize = 39;
 pub const GOES_ON: usize = 3;
 pub const INNER_LIMIT: usize = 4;
 pub const OUTER: usize = 2;
@@ -39,6 +40,8 @@ pub const HELD_ROUND: usize = 38;
 pub const LOSES: u32 = 1;
 pub const AT_HUB: u32 = 2;
 pub const BARRED: u32 = 4;
+pub const LONG: u32 = 8;
+pub const DONE: u32 = NONE - 15;
 pub const REVERSED: u32 = 1 << 31;
 pub const FLIPS: usize = 28;
 pub const DEPART_FAULT: usize = 36;
@@ -53,6 +56,8 @@ pub struct Case {
     pub degrees: Vec<u32>,
     pub scratch: Scratch,
     pub begun: Vec<Begun>,
+    /// The triangles of the longest chain that is rebuilt.
+    pub longest: u32,
     /// Those that are to depart.
     pub takes: Vec<u32>,
     /// Pairs left from the rounds before.
@@ -64,10 +69,17 @@ impl Case {
     pub fn list(&mut self) -> (Vec<u32>, Option<Vec<u32>>, u32) {
         let takes = std::mem::take(&mut self.takes);
         if !self.is_first() {
+            for (s, begun) in (0..).zip(&mut self.begun) {
+                begun.low = if takes.contains(&s) { 0 } else { begun.low };
+                begun.done |= !takes.contains(&s) && !begun.by_flips();
+            }
             return (takes, None, 0);
         }
         let Start { mesh, positions, .. } = &mut self.start;
         let (walkers, inserted, counts) = kernels::list_walkers(mesh, positions, &self.subs, &takes, &self.spokes);
+        for (s, begun) in (0..).zip(&mut self.begun) {
+            begun.done = !walkers.contains(&s);
+        }
         (walkers, Some(counts), inserted)
     }
 
@@ -106,7 +118,9 @@ impl Case {
 
     /// What stands in `lost`, with these losers and those that do not walk.
     pub fn known(&self, losers: &[u32], barred: &[u32]) -> Vec<u32> {
-        let mut known: Vec<u32> = self.begun.iter().map(|b| if b.at_hub { AT_HUB } else { 0 }).collect();
+        let flag = |yes: bool, flag: u32| if yes { flag } else { 0 };
+        let word = |b: &Begun| flag(b.at_hub, AT_HUB) | flag(b.long, LONG) | b.low << 4;
+        let mut known: Vec<u32> = self.begun.iter().map(|b| if b.done { DONE } else { word(b) }).collect();
         known.resize(known.len().max(1), 0);
         losers.iter().for_each(|&s| known[s as usize] |= LOSES);
         barred.iter().for_each(|&s| known[s as usize] |= BARRED);
@@ -121,11 +135,19 @@ impl Case {
 
     pub fn mark(&mut self, walkers: &[u32]) -> Marked {
         let Self { start, subs, scratch, begun, .. } = self;
-        kernels::mark_chains(&start.mesh, &start.positions, subs, walkers, begun, scratch)
+        kernels::mark_chains(&start.mesh, &start.positions, subs, walkers, (begun, self.longest), scratch)
+    }
+
+    /// How many chains were rebuilt.
+    pub fn rebuild(&mut self, walkers: &[u32], losers: &[u32]) -> u32 {
+        let Self { start, begun, scratch, spokes, degrees, .. } = self;
+        let Start { mesh, positions, .. } = start;
+        kernels::rebuild_chains(mesh, positions, [walkers, losers], begun, scratch, [spokes, degrees]).unwrap()
     }
 
     pub fn configure(&mut self, marked: &[u32]) {
-        let found = kernels::configure_pairs(&self.start.mesh, &self.start.positions, marked, &mut self.scratch);
+        let Self { start, begun, scratch, .. } = self;
+        let found = kernels::configure_pairs(&start.mesh, &start.positions, marked, begun, scratch);
         self.pairs.extend(found);
     }
 
@@ -141,8 +163,9 @@ impl Case {
 
     /// An outer round with two inner ones.
     pub fn round(&mut self) {
-        let (_, marked) = self.walk();
+        let (walkers, marked) = self.walk();
         assert_eq!(marked.fault, None);
+        self.rebuild(&walkers, &marked.losers);
         self.takes = marked.losers;
         self.configure(&marked.triangles);
         for _ in 0..2 {
@@ -169,11 +192,14 @@ pub fn cases() -> Vec<Case> {
         let scratch = Scratch::new(start.mesh.slots());
         let takes = (0..subs.len() as u32).collect();
         let begun = vec![Begun::default(); subs.len()];
-        let mut case = Case { name, start, subs, spokes, degrees, scratch, begun, takes, pairs: Vec::new() };
-        for _ in 0..rounds {
-            case.round();
+        let case = Case { name, start, subs, spokes, degrees, scratch, begun, longest: 0, takes, pairs: Vec::new() };
+        for longest in [0, 4] {
+            let mut case = Case { longest, ..case.clone() };
+            for _ in 0..rounds {
+                case.round();
+            }
+            cases.push(case);
         }
-        cases.push(case);
     }
     assert!(cases.len() > 5 && cases.iter().any(|case| !case.pairs.is_empty()));
     assert!(

@@ -1,4 +1,4 @@
-//! Sub-constraints become edges by flips, on the device. \[QCT\] section 4, algorithms 4 and 5.
+//! Sub-constraints become edges, on the device. \[QCT\] section 4, algorithms 4 and 5.
 //!
 //! An outer round is [`reference::insert`](crate::reference::insert())'s, in these dispatches:
 //!
@@ -11,15 +11,18 @@
 //!    it: later rounds never change an owner, as who crosses the triangles of a flip has crossed those before it. Only who has
 //!    waited at a hub has not claimed what it crosses before, and stamps what it takes from others.
 //!    Long walks go in pieces, each of which claims its part.
-//! 3. *Configure.* The triangles that got their owner are looked at, and those beside them along the chain: found by going
+//! 3. *Rebuild.* One invocation for each walker that owns its whole chain, if that is short, replaces the triangles. Half-edges
+//!    at the border get new names; where both sides do, who comes second joins them. Words of owners stay: that one is an edge
+//!    is known, and who claims a triangle of it later takes it.
+//! 4. *Configure.* The triangles that got an owner that goes by flips are looked at, and those beside them along the chain: found by going
 //!    through all triangles, so that pairs stand in the order of triangles and what is nearby is worked on together. Pairs
 //!    that may be flipped claim their triangles, by words of 32 bits: the case, then a hash of the first triangle.
-//! 4. *Inner rounds*, two dispatches each. One flips the pairs that have all they claimed; links outward keep the names that
+//! 5. *Inner rounds*, two dispatches each. One flips the pairs that have all they claimed; links outward keep the names that
 //!    the neighbors had before, and a stamp on each triangle says along which edge it was flipped. The other renews these
 //!    links, and looks at what the flips have changed: their triangles, the one before and the one after. All corners and words
 //!    are final by then, and where a link leads follows from the stamp whether it was renewed or not. So what may be flipped
 //!    claims its triangles for the next round at once.
-//! 5. *Tail.* In one workgroup: the inner rounds that are left where few pairs may be flipped, and the turn to the next outer
+//! 6. *Tail.* In one workgroup: the inner rounds that are left where few pairs may be flipped, and the turn to the next outer
 //!    round. Inner rounds for which there is no room go on in the dispatches after, and nobody walks meanwhile.
 //!
 //! Departures from the reference, none of which shows in the result: only pairs are listed, not triangles; a pair that was not
@@ -27,7 +30,9 @@
 
 use super::pieces::{self, Begun, Grid, Walkers};
 use crate::kernels::*;
-use crate::reference::{HUB, INNER_ROUNDS, LONG_CHAIN, MOST_SPOKES, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS};
+use crate::reference::{
+    HUB, INNER_ROUNDS, LONG_CHAIN, LONGEST_REBUILT, MOST_SPOKES, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS,
+};
 use crate::{Fault, InsertReport};
 use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_vulkan::{
@@ -51,6 +56,7 @@ enum Word {
     Stuck = 5,
     Walkers = 8,
     EdgesAlready = 20,
+    Rebuilt = 39,
     Intersections = 22,
     Walked = 24,
     OuterRounds = 26,
@@ -73,6 +79,22 @@ impl Pace {
     const GPU: Self = Self { groups: 1056, rounds: 8192, pairs: 1 << 20 };
     /// lavapipe leaves a shader, without a word, once its loops have made 65535 turns, those of the predicates included.
     const CPU: Self = Self { groups: 64, rounds: 64, pairs: 4096 };
+}
+
+/// Inner rounds to an outer one, outer rounds at most, and the triangles of the longest chain that is rebuilt.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug)]
+pub struct Rounds {
+    pub inner: u32,
+    pub outer: u32,
+    /// At most [`LONGEST_REBUILT`].
+    pub longest: u32,
+}
+
+impl Default for Rounds {
+    fn default() -> Self {
+        Self { inner: INNER_ROUNDS, outer: u32::MAX, longest: LONGEST_REBUILT }
+    }
 }
 
 /// What is to be inserted.
@@ -162,6 +184,7 @@ impl Read {
             walked: wide(Word::Walked, 0),
             outer_rounds: narrow(Word::OuterRounds),
             inner_rounds: narrow(Word::InnerRounds),
+            rebuilt: narrow(Word::Rebuilt),
             flips: [0, 1, 2].map(|i| wide(Word::Flips, i)),
         };
         Counts { report, inserted: narrow(Word::Inserted), fault }
@@ -178,6 +201,7 @@ pub struct Stage {
     depart: Kernel<DepartWalks>,
     admit: Kernel<AdmitWalks>,
     mark: Kernel<MarkChains>,
+    rebuild: Kernel<RebuildChains>,
     configure: Kernel<ConfigurePairs>,
     flip: Kernel<FlipPairs>,
     advance: Kernel<AdvancePairs>,
@@ -210,6 +234,7 @@ impl Stage {
             depart: arithmetic.kernel(device, &workgroup)?,
             admit: Kernel::new(device, &workgroup)?,
             mark: arithmetic.kernel(device, &workgroup)?,
+            rebuild: arithmetic.kernel(device, &workgroup)?,
             configure: arithmetic.kernel(device, &workgroup)?,
             flip: Kernel::new(device, &workgroup)?,
             advance: arithmetic.kernel(device, &workgroup)?,
@@ -227,7 +252,7 @@ impl Stage {
             .buffer::<u32>("first edges crossed", sub_constraints)
             .buffer::<u32>("pieces of walkers", sub_constraints)
             .buffer::<u32>("lost", sub_constraints)
-            .buffer::<u32>("triangles of pieces", pieces)
+            .buffer::<u32>("triangles of pieces", 2 * pieces)
             .and(pieces::Buffers::estimate(1, 1))
             .buffer::<u32>("constrain words", WORDS)
     }
@@ -253,7 +278,7 @@ impl Stage {
             firsts: Buffer::new(device, "first edges crossed", sub_constraints)?,
             runs: Buffer::new(device, "pieces of walkers", sub_constraints)?,
             lost: Buffer::new(device, "lost", sub_constraints)?,
-            piece_walked: Buffer::new(device, "triangles of pieces", pieces.max(1))?,
+            piece_walked: Buffer::new(device, "triangles of pieces", 2 * pieces.max(1))?,
             no_pieces: pieces::Buffers::new(device, 1, 1)?,
             words: Buffer::new(device, "constrain words", WORDS)?,
         })
@@ -286,10 +311,10 @@ impl Stage {
         buffers: &Buffers,
         input: Input<'_>,
     ) -> Result<Read, Error> {
-        self.record_rounds(recording, mesh, buffers, input, INNER_ROUNDS, u32::MAX)
+        self.record_rounds(recording, mesh, buffers, input, Rounds::default())
     }
 
-    /// The same with another number of inner rounds to an outer one, and so many outer rounds at most: for tests.
+    /// The same with other numbers than the usual ones: for tests.
     ///
     /// # Errors
     ///
@@ -301,8 +326,7 @@ impl Stage {
         mesh: &Mesh,
         buffers: &Buffers,
         input: Input<'_>,
-        inner: u32,
-        outer: u32,
+        rounds: Rounds,
     ) -> Result<Read, Error> {
         let (vertices, slots) = (mesh.vertices(), mesh.capacity());
         let (count, room) = (input.sub_constraints.len(), buffers.lost.len());
@@ -317,7 +341,7 @@ impl Stage {
             let why = format!("{vertices} vertices, and slots for a mesh over no more than {}", 4 * buffers.slots);
             return Err(Error::Recording { command: "constrain", why });
         }
-        let piece_room = buffers.piece_walked.len();
+        let piece_room = buffers.piece_walked.len() / 2;
         if let Some((_, list)) = input.pieces.filter(|(_, list)| list.pieces().len() > piece_room) {
             let why = format!("{} pieces; buffers for {piece_room}", list.pieces().len());
             return Err(Error::Recording { command: "constrain", why });
@@ -328,27 +352,27 @@ impl Stage {
                 recording.fill(buffers.runs.view(), NONE);
                 recording.fill(buffers.no_pieces.count(), 0);
             }
-            if outer == u32::MAX {
+            if rounds.outer == u32::MAX {
                 let left = buffers.words.slice(Word::Left as usize..Word::Left as usize + 1)?;
                 // Each outer round inserts or flips something, or looks at a tail of thousands of flips.
                 let mut recorded = Ok(());
                 recording.repeat_ahead("insert constraints", left, u32::MAX, FIRST, BATCH, |round| {
-                    recorded = self.record_outer(round, mesh, buffers, input, inner);
+                    recorded = self.record_outer(round, mesh, buffers, input, rounds);
                 });
                 recorded?;
             } else {
-                (0..outer).try_for_each(|_| self.record_outer(recording, mesh, buffers, input, inner))?;
+                (0..rounds.outer).try_for_each(|_| self.record_outer(recording, mesh, buffers, input, rounds))?;
             }
         } else {
             recording.fill(buffers.words.view(), 0);
-            recording.fill(buffers.words.slice(Word::DepartFault as usize..WORDS)?, NONE);
+            recording.fill(buffers.words.slice(Word::DepartFault as usize..Word::Rebuilt as usize)?, NONE);
         }
         Ok(Read(recording.read(buffers.words.view())))
     }
 
     fn record_start(recording: &mut Recording, buffers: &Buffers, vertices: usize) -> Result<(), Error> {
         recording.fill(buffers.words.view(), 0);
-        recording.fill(buffers.words.slice(Word::DepartFault as usize..WORDS)?, NONE);
+        recording.fill(buffers.words.slice(Word::DepartFault as usize..Word::Rebuilt as usize)?, NONE);
         recording.fill(buffers.state.view().cast(), NONE);
         recording.fill(buffers.counts(vertices)?, 0);
         Ok(())
@@ -360,7 +384,7 @@ impl Stage {
         mesh: &Mesh,
         buffers: &Buffers,
         input: Input<'_>,
-        inner: u32,
+        Rounds { inner, longest, .. }: Rounds,
     ) -> Result<(), Error> {
         let groups = [self.pace.groups, 1, 1];
         let (triangles, links, positions) = (mesh.corners(), mesh.twins(), mesh.positions().cast());
@@ -432,21 +456,37 @@ impl Stage {
             words,
             stride,
             piece_limit,
+            longest,
         };
         recording.dispatch(&self.mark, groups, &arguments);
+        let arguments = RebuildChainsArgs {
+            triangles,
+            links,
+            positions,
+            walkers,
+            runs,
+            pieces: pieces.cast(),
+            piece_count,
+            piece_walked,
+            lost,
+            state,
+            spokes,
+            degrees,
+            words,
+            piece_limit,
+            longest,
+        };
+        recording.dispatch(&self.rebuild, groups, &arguments);
         let arguments = ConfigurePairsArgs {
             triangles,
             links,
             positions,
             state,
-            pieces,
-            piece_count,
-            piece_walked,
+            lost,
             pairs,
             words,
             stride,
             slots: mesh.capacity() as u32,
-            piece_limit,
         };
         recording.dispatch(&self.configure, groups, &arguments);
         for _ in 0..inner {

@@ -3,7 +3,7 @@
 //! For a triangle A of a chain, B is the one before it and C the one after it, seen from the lower end of the owner. An
 //! *inner round*:
 //!
-//! 1. The configuration of (A, C) is found for each listed triangle A whose next one has the same owner.
+//! 1. The configuration of (A, C) is found for each listed triangle A whose next one has the same owner, if that goes by flips.
 //! 2. (A, C) is flippable
 //!    - in case 1, if it is a zero or single intersection;
 //!    - in case 2, if it and (B, A) are double ones, and B and what would then come after it were a single one;
@@ -78,7 +78,7 @@ impl Insertion<'_> {
             self.inner.listed[t as usize] = false;
         }
         // Step 1.
-        work.retain(|&t| self.owner[t as usize] != FREE);
+        work.retain(|&t| self.is_by_flips(t));
         for &t in &work {
             self.inner.configurations[t as usize] = self.owned().next_pair(t as usize).map(|(_, c)| c);
         }
@@ -131,7 +131,7 @@ impl Insertion<'_> {
 
     /// The pairs that may be flipped now claim their triangles, whoever owns these after the walks.
     pub(super) fn hold_pairs(&mut self) {
-        let held = self.inner.work.iter().filter_map(|&a| {
+        let held = self.inner.work.iter().filter(|&&a| self.is_by_flips(a)).filter_map(|&a| {
             let (_, own) = self.owned().next_pair(a as usize)?;
             let before = |b: u32| self.owned().next_pair(b as usize).map(|(_, c)| c);
             let pair = self.owned().candidate(a as usize, own, before, self.inner.trial.blind)?;
@@ -189,11 +189,8 @@ impl Insertion<'_> {
         for (v, spoke) in [(right, h), (left, g), (far, diagonal), (near, self.mesh.twin(diagonal))] {
             self.spokes[v as usize] = spoke;
         }
-        for v in [right, left] {
-            self.degrees[v as usize] -= 1;
-        }
-        for v in [near, far] {
-            self.degrees[v as usize] += 1;
+        for (v, side) in [(near, near_side), (far, far_side)] {
+            self.degrees[v as usize] += u32::from(side == 0);
         }
     }
 }

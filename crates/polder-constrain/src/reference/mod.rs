@@ -29,6 +29,7 @@ mod keys;
 mod near;
 mod pairs;
 mod place;
+mod rebuild;
 mod walk;
 
 pub use configuration::{Configuration, TriangleChain, triangle_chain};
@@ -36,7 +37,8 @@ pub use crossings::crossings;
 #[doc(hidden)]
 pub use inner::Trial;
 pub use insert::{
-    HUB, INNER_ROUNDS, Insertion, LONG_CHAIN, MOST_SPOKES, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS, insert,
+    HUB, INNER_ROUNDS, Insertion, LONG_CHAIN, LONGEST_REBUILT, MOST_SPOKES, MOST_SUB_CONSTRAINTS, MOST_TIMES,
+    USUAL_ROUNDS, insert,
 };
 pub use intersection::intersection;
 pub use keys::{claim_key, owner_of, owner_priority};

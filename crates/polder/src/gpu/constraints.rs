@@ -201,6 +201,7 @@ impl Found {
             ("intersections", insertion.intersections),
             ("rounds", insertion.inner_rounds),
             ("outer_rounds", insertion.outer_rounds),
+            ("rebuilt", insertion.rebuilt),
             ("flips", insertion.all_flips()),
         ];
         [("walk", vec![("pieces", *pieces), ("chain_vertices", *vertices)]), ("constrain", constrain)]

@@ -6,6 +6,7 @@ use super::super::fan::{Departure, depart_by_turning, depart_from, enter, leave}
 use super::super::insert::{HUB, MOST_SPOKES};
 use super::super::pairs::{Candidate, Owned, words_of_flip};
 use super::super::place::{self, FREE};
+use super::super::rebuild::rebuild;
 use crate::Fault;
 use glam::DVec2;
 use polder_mesh::{GhostMesh, NONE, next, prev, twin_code};
@@ -65,6 +66,19 @@ pub struct Begun {
     pub reversed: bool,
     /// See there.
     pub at_hub: bool,
+    /// Whether its chain was too long once.
+    pub long: bool,
+    /// Once it walks, the triangle at its lower end.
+    pub low: u32,
+    /// Whether it became an edge and did not go by flips.
+    pub done: bool,
+}
+
+impl Begun {
+    /// Whether it goes by flips.
+    pub fn by_flips(&self) -> bool {
+        self.long || self.at_hub
+    }
 }
 
 /// Which of these sub-constraints are no edges, how many are and become constrained ones, and how many of the others end at each
@@ -132,9 +146,10 @@ pub fn depart_walks(
         match depart_from(mesh, positions, hint, spokes[from as usize], to) {
             Some(Departure::Across(first)) => {
                 departed.walkers.push(s);
-                begun[s as usize] = Begun { first, reversed, at_hub };
+                let low = if reversed { 0 } else { first / 3 };
+                begun[s as usize] = Begun { first, reversed, at_hub, low, ..before };
                 if at_hub {
-                    own(s, first, [0, -1, 1], reversed, scratch, &mut departed.marked);
+                    own(s, first, [0, -1, 1], begun, scratch, &mut departed.marked);
                 }
             }
             Some(Departure::Along(h)) if mesh.destination(h) == to => {
@@ -173,32 +188,36 @@ pub struct Marked {
     pub fault: Option<Fault>,
 }
 
-/// Steps 2 and 3 of an outer round.
+/// Steps 2 and 3 of an outer round. Those with chains of more than `longest` triangles go by flips.
 pub fn mark_chains(
     mesh: &GhostMesh,
     positions: &[DVec2],
     sub_constraints: &[[u32; 2]],
     walkers: &[u32],
-    begun: &[Begun],
+    (begun, longest): (&mut [Begun], u32),
     scratch: &mut Scratch,
 ) -> Marked {
-    let mut marked = Marked::default();
+    let (mut marked, mut long) = (Marked::default(), Vec::new());
     for &s in walkers {
         let ends = sub_constraints[s as usize];
         let Begun { first, reversed, .. } = begun[s as usize];
         let line = if reversed { [ends[1], ends[0]] } else { ends }.map(|v| positions[v as usize]);
         let (mut h, mut near) = (first, 0);
         let mut fault = Some(Fault::Lost(s));
+        let before = marked.walked;
         for _ in 0..mesh.slots() {
-            own(s, h, [near, -1, 1], reversed, scratch, &mut marked);
+            own(s, h, [near, -1, 1], begun, scratch, &mut marked);
             if mesh.is_constrained(h) {
                 fault = Some(Fault::Blocked(s));
                 break;
             }
             let Some((g, side)) = enter(mesh, positions, h, line) else { break };
             if side == Sign::Zero {
-                own(s, g, [0, 1, -1], reversed, scratch, &mut marked);
+                own(s, g, [0, 1, -1], begun, scratch, &mut marked);
                 let done = mesh.apex(g) == ends[usize::from(!reversed)];
+                if reversed {
+                    begun[s as usize].low = g / 3;
+                }
                 fault = (!done).then_some(Fault::ThroughVertex(s));
                 break;
             }
@@ -206,6 +225,10 @@ pub fn mark_chains(
             near = side as i8;
         }
         marked.fault = marked.fault.or(fault);
+        long.extend((marked.walked - before > u64::from(longest)).then_some(s as usize));
+    }
+    for s in long {
+        begun[s].long = true;
     }
     marked.losers.sort_unstable();
     marked.losers.dedup();
@@ -213,19 +236,23 @@ pub fn mark_chains(
 }
 
 /// A walker claims the triangle of a half-edge; sides are those of the corners from there on.
-fn own(s: u32, h: u32, from: [i8; 3], reversed: bool, scratch: &mut Scratch, marked: &mut Marked) {
+fn own(s: u32, h: u32, from: [i8; 3], begun: &[Begun], scratch: &mut Scratch, marked: &mut Marked) {
     let (t, k) = twin_code(h);
+    let Begun { reversed, .. } = begun[s as usize];
     let mut sides = [0; 3];
     for (i, side) in from.into_iter().enumerate() {
         sides[(k + i) % 3] = if reversed { -side } else { side };
     }
     marked.walked += 1;
-    let (word, old) = (place::word(s, sides), scratch.owner[t]);
+    let word = place::word(s, sides);
+    let is_done = place::owner(scratch.owner[t]).is_some_and(|owner| begun[owner as usize].done);
+    let old = if is_done { FREE } else { scratch.owner[t] };
     scratch.owner[t] = old.min(word);
-    if old == FREE {
+    let same = place::same_owner(old, word);
+    if old == FREE || (same && !begun[s as usize].by_flips()) {
         scratch.stamps[t] = scratch.round << 2 | LISTED;
         marked.triangles.push(t as u32);
-    } else if !place::same_owner(old, word) {
+    } else if !same {
         marked.losers.extend(if old < word { Some(s) } else { place::owner(old) });
         if old > word {
             marked.stolen = true;
@@ -237,13 +264,43 @@ fn own(s: u32, h: u32, from: [i8; 3], reversed: bool, scratch: &mut Scratch, mar
     }
 }
 
-/// The pairs that may be flipped because triangles got their owner; they claim their triangles.
-pub fn configure_pairs(mesh: &GhostMesh, positions: &[DVec2], marked: &[u32], scratch: &mut Scratch) -> Vec<[u32; 2]> {
+/// Step 4 of an outer round: how many chains of these walkers, of which some do not own theirs, were rebuilt; nothing, if the
+/// mesh is no triangulation.
+pub fn rebuild_chains(
+    mesh: &mut GhostMesh,
+    positions: &[DVec2],
+    [walkers, losers]: [&[u32]; 2],
+    begun: &[Begun],
+    scratch: &Scratch,
+    [spokes, degrees]: [&mut [u32]; 2],
+) -> Option<u32> {
+    let whole = walkers.iter().filter(|s| !losers.contains(s)).map(|&s| begun[s as usize]);
+    let mut rebuilt = 0;
+    for Begun { low, .. } in whole.filter(|begun| !begun.by_flips()) {
+        let first = 3 * low + place::outward(scratch.owner[low as usize])?;
+        rebuild(mesh, positions, &scratch.owner, first, [&mut *spokes, &mut *degrees])?;
+        rebuilt += 1;
+    }
+    Some(rebuilt)
+}
+
+/// The pairs that may be flipped because triangles got owners that go by flips; they claim their triangles.
+pub fn configure_pairs(
+    mesh: &GhostMesh,
+    positions: &[DVec2],
+    marked: &[u32],
+    begun: &[Begun],
+    scratch: &mut Scratch,
+) -> Vec<[u32; 2]> {
+    let by_flips = |t: &u32| {
+        let owner = place::owner(scratch.owner[*t as usize]);
+        owner.is_some_and(|s| begun[s as usize].by_flips())
+    };
     let owned = Owned { mesh, positions, owner: &scratch.owner };
     let is_new = |t: u32| scratch.stamps[t as usize] == scratch.round << 2 | LISTED;
     let old_or_none = |t: Option<u32>| t.filter(|&t| !is_new(t));
     let mut found = Vec::new();
-    for &t in marked {
+    for t in marked.iter().copied().filter(by_flips) {
         found.extend(look(owned, t));
         found.extend(old_or_none(beside(owned, t, false)).and_then(|a| look(owned, a)));
         let after = old_or_none(beside(owned, t, true)).filter(|&a| !beside(owned, a, true).is_some_and(is_new));
