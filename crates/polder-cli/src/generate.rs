@@ -16,6 +16,9 @@ pub(crate) fn generate(job: &Job, args: &GenerateArgs) -> Result<ExitCode, Failu
     if n > Pslg::MAX_POINTS || segments > most {
         usage(&format!("at most {} points and {most} segments can be made", Pslg::MAX_POINTS));
     }
+    if args.width == Some(0) {
+        usage("a lattice is at least 1 wide");
+    }
     job.stage("generating");
     let pslg = family(args, n, segments);
     if to == InputFormat::Node && !pslg.constraints().is_empty() {
