@@ -33,9 +33,9 @@ layout(push_constant, std430) uniform Args {
 
 const uint ROWS = 14u;
 const uint WORDS = 2u * ROWS;
-// Of four steps each: turns that are made here, and more than any border of a flooded diagram has.
-layout(constant_id = 1) const uint NEAR = 3u;
-const uint LONGEST = 1u << 20;
+// Steps that are made here, and more than any border of a flooded diagram has.
+layout(constant_id = 1) const uint NEAR = 12u;
+const uint LONGEST = 1u << 22;
 
 // For each word of the tile: vertices, those with two triangles, its first slot, triangles before it in the tile.
 shared uvec4 words[WORDS];
@@ -69,10 +69,19 @@ struct Walk {
     ivec2 step;
 };
 
-// Follows the border for so many turns of four steps, and says whether it has come to a vertex. Several steps a turn, since
-// llvmpipe ends all loops of an invocation after 65535 turns.
-bool arrives(uvec2 sides, uint turns, inout Walk walk) {
-    [[dont_unroll]] for (uint turn = 0u; turn < turns; turn++) {
+// Whether the border comes to a vertex soon.
+bool arrives_soon(uvec2 sides, inout Walk walk) {
+    [[dont_unroll]] for (uint step = 0u; step < NEAR; step++) {
+        if (reaches(sides, walk.at, walk.step)) {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Follows the border however far it goes. Several steps a turn, since llvmpipe ends all loops of an invocation after 65535 turns.
+bool arrives(uvec2 sides, inout Walk walk) {
+    [[dont_unroll]] for (uint step = 0u; step < LONGEST; step += 4u) {
         if (reaches(sides, walk.at, walk.step) || reaches(sides, walk.at, walk.step)
             || reaches(sides, walk.at, walk.step) || reaches(sides, walk.at, walk.step)) {
             return true;
@@ -160,9 +169,9 @@ void main() {
             } else {
                 Walk walk = Walk(ivec2(x, y), step_of(side(r, is_second, k)));
                 uvec2 sides = corners.zy;
-                bool arrived = arrives(sides, NEAR, walk);
+                bool arrived = arrives_soon(sides, walk);
                 if (arrived || !is_listed(h, walk)) {
-                    arrived = arrived || arrives(sides, LONGEST, walk);
+                    arrived = arrived || arrives(sides, walk);
                     if (arrived) {
                         link = half_edge_at(sides, walk.at, walk.step);
                     } else {

@@ -108,9 +108,9 @@ define_kernel! {
     }
     argument_bytes 100;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
-    constants ["WORKGROUP"(0) = 256, "NEAR"(1) = 3];
+    constants ["WORKGROUP"(0) = 256, "NEAR"(1) = 12];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8c235c4ff7b2b8a6c808951dea9266d3a1b019d28aeb4342e33541869ee10bce";
+    source "964eccc3d0222807fc3b02dcfca8d9d955252d8f0dd27490426d8e03ef686294";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -56,14 +56,12 @@
 //! the largest and smallest numbers. Its sites stand at the lower left corners of pixels; here at their centers.
 
 use crate::bounds::checked_count;
+use crate::occupancy::USUAL;
 use crate::{Bounds, Occupancy, VoronoiError};
 use glam::DVec2;
 
 /// The longest side of a grid, in pixels.
 pub const MAX_SIDE: u32 = 1 << 15;
-
-/// Pixels for each point, unless told.
-const USUAL: f64 = 7.0;
 
 /// A pixel's half side has at most this many bits.
 const HALF_BITS: u32 = 19;
@@ -310,13 +308,13 @@ impl Wish {
         let per_point = match resolution {
             Resolution::LongerSide(side) if (1..=MAX_SIDE).contains(&side) => return Ok(Self::Square { longer: side }),
             Resolution::LongerSide(side) => return Err(VoronoiError::GridSide { side, limit: MAX_SIDE }),
-            Resolution::Adaptive => USUAL,
+            Resolution::Adaptive => f64::from(USUAL),
             Resolution::PixelsPerPoint(wanted) if (1.0 / 1024.0..=1024.0).contains(&wanted) => wanted,
             Resolution::PixelsPerPoint(_) => return Err(VoronoiError::PixelsPerPoint),
         };
         // The wish in 1/1024; at most 2^20 times 2^32 points, times 2^54 units: far from the end of 128 bits.
         let area = (points as u128 * (per_point * 1024.0) as u128 / 1024).max(1);
-        let area = occupancy.filter(|_| resolution == Resolution::Adaptive).map_or(area, |found| found.pixels(area));
+        let area = occupancy.filter(|_| resolution == Resolution::Adaptive).map_or(area, |o| o.pixels(points as u128));
         let (longer, shorter) = (u128::from(extent[0].max(extent[1])), u128::from(extent[0].min(extent[1])));
         // A side w along the longer extent makes w * w * shorter / longer pixels, and at least w.
         let side = (area * longer).checked_div(shorter).map_or(area, |square| square.isqrt().min(area)).max(1);

@@ -2,15 +2,15 @@
 //!
 //! The box is divided into square cells whose side is a power of two, so that a point's cell is a shift away: as small as keeps
 //! them at most 2048 along either axis. How many have points is counted for them, and for cells two, four, .. 8 times as
-//! wide. Integers alone.
+//! wide. Integers alone. One point of [`EVERY`] is looked at.
 //!
 //! Points along lines own ever more pixels as the grid gets finer, but ever fewer for each pixel that is added, and pixels cost
-//! time whether they are owned or not: those that own none color the empty parts of the box from far away. So sets of which
-//! there would be a site to more than [`CROWDED`] pixels get [`FEW`] parts of [`USUAL`] of the pixels. A set that fills its box,
-//! with 7 pixels for each point, has a site to 7.5.
+//! time whether they are owned or not: those without a point are colored from far away. So sets that would have a site to more
+//! than about 32 of [`USUAL`] pixels for each point get [`FEW`] for each. A set that fills its box has a site to 7.5 then.
 //!
-//! How many sites there would be is taken from the two levels between which the grid lies, or foretold from the two finest: the
-//! cells in use grow as they did in the last step.
+//! The quarter that is looked at would have somewhat fewer sites than all, so the line is drawn at [`CROWDED`]; a quarter that
+//! fills its box has a site to 28. How many it would have is taken from the two levels between which the grid lies, or foretold
+//! from the two finest: the cells in use grow as they did in the last step.
 //!
 //! Measured on an NVIDIA H200, all stages of a triangulation, with 7 pixels for each point and with 2: the world's coastlines
 //! (10.7 million points, a site to 89 pixels) 47.9 and 45.7 ms; a million points in rings a thousandth and a thousandth of a
@@ -28,27 +28,22 @@ const SIDE_BITS: u32 = 11;
 /// Sizes of cells, each twice as wide as the one before.
 pub(crate) const LEVELS: usize = 4;
 
-/// More pixels than that for each site mean that the points crowd.
-const CROWDED: u128 = 32;
-/// Then there shall be so many parts
-const FEW: u128 = 2;
-/// of this of the pixels.
-const USUAL: u128 = 7;
+/// Pixels for each point.
+pub(crate) const USUAL: u32 = 7;
+/// The same where points crowd,
+const FEW: u32 = 2;
+/// which means more pixels than that for each site, if those looked at were all.
+const CROWDED: u128 = 48;
 /// Boxes with fewer cells than that along an axis are not looked at.
 const NARROW: u32 = 64;
 /// Sets of fewer points are not looked at: nothing is to be gained.
 const MANY: usize = 1 << 16;
-/// Of more points than that half are looked at.
-const VERY_MANY: usize = 1 << 21;
+/// One in so many runs of eight points is looked at.
+pub(crate) const EVERY: u32 = 4;
 
 /// Whether it is worth while to ask for the occupancy of so many points.
 pub(crate) fn is_asked_for(points: usize) -> bool {
     points >= MANY
-}
-
-/// One in so many runs of eight points is looked at.
-pub(crate) fn every(points: usize) -> u32 {
-    if points > VERY_MANY { 2 } else { 1 }
 }
 
 /// Where cells lie.
@@ -91,8 +86,7 @@ pub struct Occupancy {
 impl Occupancy {
     /// That of the points in a box; `None` where it is not asked for, since they are few.
     pub fn of(points: &[DVec2], bounds: &Bounds) -> Option<Self> {
-        is_asked_for(points.len())
-            .then(|| Self::of_counts(bounds, count_cells(&mark_cells(points, bounds, every(points.len())))))
+        is_asked_for(points.len()).then(|| Self::of_counts(bounds, count_cells(&mark_cells(points, bounds, EVERY))))
     }
 
     /// From what [`reference::count_cells`](crate::reference::count_cells) gives.
@@ -100,8 +94,9 @@ impl Occupancy {
         Self { sides: Cells::of(bounds).sides, counts }
     }
 
-    /// How many pixels there shall be over the box, where there would be `usual` if points filled it.
-    pub(crate) fn pixels(&self, usual: u128) -> u128 {
+    /// How many pixels there shall be over the box for so many points.
+    pub(crate) fn pixels(&self, points: u128) -> u128 {
+        let usual = points * u128::from(USUAL);
         if self.sides.iter().any(|&side| side < NARROW) {
             return usual;
         }
@@ -114,11 +109,11 @@ impl Occupancy {
         let (mut coarse, mut fine) = (level(finest), level(finest - 1));
         while fine.0 < usual {
             // Four times as many cells, with as much more in use as in the last step.
-            let occupied = (fine.1 * fine.1 / coarse.1).clamp(fine.1, 4 * fine.1);
+            let occupied = (fine.1 * fine.1 / coarse.1).min(points / u128::from(EVERY)).clamp(fine.1, 4 * fine.1);
             (coarse, fine) = (fine, (4 * fine.0, occupied));
         }
         let part = 1024 * usual.saturating_sub(coarse.0) / (fine.0 - coarse.0).max(1);
         let sites = coarse.1 + fine.1.saturating_sub(coarse.1) * part / 1024;
-        if usual > CROWDED * sites { usual * FEW / USUAL } else { usual }
+        if usual > CROWDED * sites { points * u128::from(FEW) } else { usual }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::FindBounds;
 use crate::kernels::{CountCells, CountCellsArgs, MarkCells, MarkCellsArgs};
-use crate::occupancy::{self, LEVELS, SIDE};
+use crate::occupancy::{self, EVERY, LEVELS, SIDE};
 use crate::{Bounds, Occupancy};
 use glam::DVec2;
 use polder_vulkan::{Buffer, Device, Error, Kernel, ReadBack, Recording, RunReport, View, groups_for};
@@ -42,7 +42,7 @@ impl FindOccupancy {
         }
         let (bits, counts) = (self.bits.view(), self.counts.view());
         recording.fill(bits, 0);
-        let (count, every) = (points.len() as u32, occupancy::every(points.len()));
+        let (count, every) = (points.len() as u32, EVERY);
         let arguments =
             MarkCellsArgs { points: points.cast::<u64>(), bounds: bounds.words(), bits, counts, count, every };
         let runs = points.len().div_ceil(8 * every as usize);
