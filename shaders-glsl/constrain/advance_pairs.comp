@@ -11,9 +11,9 @@ layout(push_constant, std430) uniform Args {
     Rows links;
     ReadPoints positions;
     U32 state;
-    U32x2 pairs;
+    U32x2 even_pairs;
+    U32x2 odd_pairs;
     U32 words;
-    uint stride;
 };
 
 void main() {
@@ -32,7 +32,7 @@ void main() {
         uint i = begin + gl_LocalInvocationIndex;
         Candidate found = NO_PAIR;
         if (i < end) {
-            uvec2 entry = pairs.at[parity * stride + (i >> 2)];
+            uvec2 entry = pairs_of(parity).at[(i >> 2)];
             Look look = settle(links, state, parity, round, entry, i & 3u);
             if (i >> 2 >= held) {
                 found = look.known;
@@ -44,7 +44,7 @@ void main() {
         uint place = place_in(words, CANDIDATES + (parity ^ 1u), found.a != NONE);
         if (found.a != NONE) {
             claim(state, parity ^ 1u, found);
-            pairs.at[(parity ^ 1u) * stride + place] = found.entry;
+            pairs_of(parity ^ 1u).at[place] = found.entry;
         }
     }
 }

@@ -13,9 +13,9 @@ layout(push_constant, std430) uniform Args {
     ReadPoints positions;
     U32 state;
     ReadU32 lost;
-    U32x2 pairs; // of even rounds, then of odd ones
+    U32x2 even_pairs;
+    U32x2 odd_pairs;
     U32 words;
-    uint stride;
     uint slots;
 };
 
@@ -53,10 +53,15 @@ void main() {
             new_count = 0u;
         }
         barrier();
-        for (uint i = begin + rank; i < min(begin + BLOCK, end); i += WORKGROUP) {
-            uint word = state.at[OWNED(i)];
-            if (word != FREE && is_new(i, round) && (lost.at[owner_of(word)] & BY_FLIPS) != 0u) {
-                new_ones[atomicAdd(new_count, 1u)] = i;
+        // All reads at once: stamps and words of owners.
+        uvec2 both[BLOCK / WORKGROUP];
+        [[unroll]] for (uint k = 0u; k < BLOCK / WORKGROUP; k++) {
+            uint i = begin + rank + k * WORKGROUP;
+            both[k] = i < end ? U32x2(state).at[2u * i + 1u] : uvec2(NONE);
+        }
+        [[unroll]] for (uint k = 0u; k < BLOCK / WORKGROUP; k++) {
+            if (both[k].y != FREE && ~both[k].x == (round << 2 | LISTED) && (lost.at[owner_of(both[k].y)] & BY_FLIPS) != 0u) {
+                new_ones[atomicAdd(new_count, 1u)] = begin + rank + k * WORKGROUP;
             }
         }
         barrier();
@@ -88,7 +93,7 @@ void main() {
                 uint place = place_in(words, CANDIDATES + parity, found.a != NONE);
                 if (found.a != NONE) {
                     claim(state, parity, found);
-                    pairs.at[parity * stride + place] = found.entry;
+                    pairs_of(parity).at[place] = found.entry;
                 }
             }
         }

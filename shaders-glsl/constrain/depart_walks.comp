@@ -23,6 +23,8 @@ layout(push_constant, std430) uniform Args {
     uint most;        // spokes that any turn takes
     uint crowd;       // from so many sub-constraints on a vertex is a hub,
     uint most_spokes; // if it has no more edges than these
+    uint longest;     // chains of up to so many triangles are rebuilt,
+    uint least;       // if so many walk
 };
 
 bool is_hub(uint v) {
@@ -44,6 +46,9 @@ void main() {
     bool first = words.at[OUTER] == 0u;
     uint count = words.at[WALKERS];
     uint stamp = words.at[ROUND] << 2 | LISTED;
+    if (first && item_index() == 0u) {
+        words.at[LONGEST] = count < least ? 0u : longest;
+    }
     for (uint i = item_index(); i < count; i += item_stride()) {
         uint s = walkers.at[i];
         uvec2 ends = sub_constraints.at[s];

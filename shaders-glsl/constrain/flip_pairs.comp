@@ -8,11 +8,11 @@ layout(push_constant, std430) uniform Args {
     Rows triangles;
     Rows links;
     U32 state;
-    U32x2 pairs;
+    U32x2 even_pairs;
+    U32x2 odd_pairs;
     U32 spokes;
     U32 degrees;
     U32 words;
-    uint stride;
     uint least; // fewer pairs are left to another kernel
 };
 
@@ -31,12 +31,12 @@ void main() {
     barrier();
     uint held = held_pairs(words, round);
     for (uint i = item_index(); i < end; i += item_stride()) {
-        uvec2 entry = pairs.at[parity * stride + i];
+        uvec2 entry = pairs_of(parity).at[i];
         if (wins(links, state, parity, entry, i < held ? round - 1u : NONE)) {
             if (flip_pair(triangles, links, state, spokes, degrees, round, entry.x)) {
                 atomicAdd(flips_of_group[3], 1u);
             }
-            pairs.at[parity * stride + i].x = entry.x | WON;
+            pairs_of(parity).at[i].x = entry.x | WON;
             atomicAdd(flips_of_group[entry.y >> CLAIM_BITS], 1u);
         }
     }

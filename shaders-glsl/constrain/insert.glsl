@@ -21,6 +21,8 @@ BUFFER(SharedU32x2, uvec2, 8, coherent);
 #define PAIRS U32x2
 #endif
 #include "tallies.glsl"
+// Those that kernels have as arguments, of even and of odd rounds.
+#define pairs_of(PARITY) ((PARITY) == 0u ? even_pairs : odd_pairs)
 
 // The words that steer rounds.
 // Sub-constraints that are not in yet; zero also where nothing can go on.
@@ -66,6 +68,8 @@ const uint HELD_ROUND = 38u;
 // What is reported; sums have two words, the low one first.
 const uint EDGES_ALREADY = 20u;
 const uint REBUILT = 39u;
+// The triangles of the longest chain that is rebuilt.
+const uint LONGEST = 40u;
 const uint INTERSECTIONS = 22u;
 const uint WALKED = 24u;
 const uint OUTER_ROUNDS = 26u;

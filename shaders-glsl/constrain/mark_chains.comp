@@ -22,7 +22,6 @@ layout(push_constant, std430) uniform Args {
     U32 words;
     uint stride;
     uint piece_limit;
-    uint longest; // chains of more triangles go by flips
 };
 
 shared uint walked;
@@ -31,6 +30,7 @@ void main() {
     uint count = words.at[DEPART_FAULT] == NONE ? words.at[WALKERS] : 0u;
     uint end = count == 0u ? 0u : count + min(piece_count.at[0], piece_limit);
     uint stamp = words.at[ROUND] << 2 | LISTED;
+    uint longest = words.at[LONGEST];
     if (gl_LocalInvocationIndex == 0u) {
         walked = 0u;
     }

@@ -11,12 +11,12 @@ layout(push_constant, std430) uniform Args {
     SharedRows links;
     ReadPoints positions;
     SharedU32 state;
-    SharedU32x2 pairs;
+    SharedU32x2 even_pairs;
+    SharedU32x2 odd_pairs;
     SharedU32 spokes;
     SharedU32 degrees;
     MaybeReadU32 counter; // how many sub-constraints there are, else all
     SharedU32 words;
-    uint stride;
     uint limit;      // sub-constraints that there is room for
     uint least;      // so many pairs are left to other kernels, four times as many once it has begun
     uint most;       // rounds
@@ -119,18 +119,18 @@ void main() {
             next_count = 0u;
         }
         for (uint i = rank; i < count; i += WORKGROUP) {
-            uvec2 entry = pairs.at[parity * stride + i];
+            uvec2 entry = pairs_of(parity).at[i];
             if (wins(links, state, parity, entry, i < held ? round - 1u : NONE)) {
                 if (flip_pair(triangles, links, state, spokes, degrees, round, entry.x)) {
                     atomicAdd(flips[3], 1u);
                 }
-                pairs.at[parity * stride + i].x = entry.x | WON;
+                pairs_of(parity).at[i].x = entry.x | WON;
                 atomicAdd(flips[entry.y >> CLAIM_BITS], 1u);
             }
         }
         wait();
         for (uint i = rank; i < 4u * count; i += WORKGROUP) {
-            uvec2 entry = pairs.at[parity * stride + (i >> 2)];
+            uvec2 entry = pairs_of(parity).at[(i >> 2)];
             Look look = settle(links, state, parity, round, entry, i & 3u);
             Candidate found = NO_PAIR;
             if (i >> 2 >= held) {
@@ -141,7 +141,7 @@ void main() {
             }
             if (found.a != NONE) {
                 claim(state, parity ^ 1u, found);
-                pairs.at[(parity ^ 1u) * stride + atomicAdd(next_count, 1u)] = found.entry;
+                pairs_of(parity ^ 1u).at[atomicAdd(next_count, 1u)] = found.entry;
             }
         }
         wait();

@@ -25,7 +25,6 @@ layout(push_constant, std430) uniform Args {
     U32 degrees;
     U32 words;
     uint piece_limit;
-    uint longest;
 };
 
 // Triangles of the longest chain, at most; and corners on both sides together, of which one of the ends is on both.
@@ -49,6 +48,7 @@ bool is_long(uint s) {
         return false;
     }
     uvec4 first = pieces.at[run];
+    uint longest = words.at[LONGEST];
     uint sum = piece_walked.at[piece_limit + run];
     // Those behind the first piece that came to the end are superfluous.
     uint end = min(pieces_end(first, run), run + first.w);

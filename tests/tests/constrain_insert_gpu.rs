@@ -73,7 +73,7 @@ fn assert_inserted(gpu: &mut Gpu, stage: &Stage, name: &str, case: &Case<'_>, lo
         insertion.outer_round().unwrap();
     }
     let report = insertion.report();
-    let (counts, mesh) = run(gpu, stage, case, Rounds { longest, ..Rounds::default() });
+    let (counts, mesh) = run(gpu, stage, case, Rounds { longest, least: 0, ..Rounds::default() });
     assert_eq!(counts, Counts { report, inserted: report.sub_constraints, fault: None }, "{name}, {longest}");
     assert!(mesh == expected, "{name}, {longest}: {report}");
     report
@@ -139,7 +139,7 @@ fn round_by_round() {
                 continue;
             }
             let report = insertion.report();
-            let (counts, mesh) = run(&mut gpu, &stages[turn % 2], &case, Rounds { inner, outer, longest });
+            let (counts, mesh) = run(&mut gpu, &stages[turn % 2], &case, Rounds { inner, outer, longest, least: 0 });
             assert_eq!(counts.report, report, "{name}: {inner} {outer} {longest}");
             assert!(mesh == expected, "{name}: {inner} {outer} {longest}");
             compared += 1;
@@ -189,7 +189,7 @@ fn any_order_gives_one_flipped_mesh() {
                 subs.sort_by_key(|s| polder_flip::priority(s[0].wrapping_mul(977) ^ s[1] ^ order));
             }
             let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
-            let (counts, mut mesh) = run(&mut gpu, &stages[turn % 2], &case, Rounds::default());
+            let (counts, mut mesh) = run(&mut gpu, &stages[turn % 2], &case, Rounds { least: 0, ..Rounds::default() });
             assert_eq!((counts.inserted, counts.fault), (subs.len() as u64, None), "{name}");
             polder_flip::reference::flip(&mut mesh, &start.positions).unwrap();
             let names: Vec<u32> = (0..start.positions.len() as u32).collect();

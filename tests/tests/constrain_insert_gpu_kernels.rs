@@ -39,7 +39,6 @@ fn rebuild_chains() {
                 degrees: on.degrees.view(),
                 words: on.words.view(),
                 piece_limit: 1,
-                longest,
             };
             run::<RebuildChains>(&mut gpu, EXACT, 2, &arguments);
             let rebuilt = case.rebuild(&walkers, &marked.losers);
@@ -71,9 +70,9 @@ fn configure_pairs() {
             positions: on.mesh.positions().cast(),
             state: on.state.view().cast(),
             lost: on.lost.view(),
-            pairs: on.pairs.view().cast(),
+            even_pairs: on.pairs[0].view().cast(),
+            odd_pairs: on.pairs[1].view().cast(),
             words: on.words.view(),
-            stride: on.stride as u32,
             slots: case.start.mesh.slots() as u32,
         };
         run::<ConfigurePairs>(&mut gpu, EXACT, 2, &arguments);
@@ -113,11 +112,11 @@ fn flip_pairs() {
                 triangles: on.mesh.corners(),
                 links: on.mesh.twins(),
                 state: on.state.view().cast(),
-                pairs: on.pairs.view().cast(),
+                even_pairs: on.pairs[0].view().cast(),
+                odd_pairs: on.pairs[1].view().cast(),
                 spokes: on.spokes.view(),
                 degrees: on.degrees.view(),
                 words: on.words.view(),
-                stride: on.stride as u32,
                 least,
             };
             run::<FlipPairs>(&mut gpu, &[], 2, &arguments);
@@ -156,9 +155,9 @@ fn advance_pairs() {
             links: on.mesh.twins(),
             positions: on.mesh.positions().cast(),
             state: on.state.view().cast(),
-            pairs: on.pairs.view().cast(),
+            even_pairs: on.pairs[0].view().cast(),
+            odd_pairs: on.pairs[1].view().cast(),
             words: on.words.view(),
-            stride: on.stride as u32,
         };
         run::<AdvancePairs>(&mut gpu, EXACT, 2, &arguments);
         case.advance();
@@ -192,12 +191,12 @@ fn pair_tail() {
                 links: on.mesh.twins(),
                 positions: on.mesh.positions().cast(),
                 state: on.state.view().cast(),
-                pairs: on.pairs.view().cast(),
+                even_pairs: on.pairs[0].view().cast(),
+                odd_pairs: on.pairs[1].view().cast(),
                 spokes: on.spokes.view(),
                 degrees: on.degrees.view(),
                 counter: None,
                 words: on.words.view(),
-                stride: on.stride as u32,
                 limit: case.subs.len() as u32,
                 least,
                 most,

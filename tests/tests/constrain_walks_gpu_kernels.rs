@@ -88,6 +88,8 @@ fn depart_walks() {
             most: 3 * case.start.mesh.slots() as u32,
             crowd: HUB,
             most_spokes: MOST_SPOKES,
+            longest: 5,
+            least: walkers.len() as u32 + case.name.len() as u32 % 2,
         };
         run::<DepartWalks>(&mut gpu, EXACT, 2, &arguments);
         let mut expected = case.depart(&walkers, counts.as_deref());
@@ -105,6 +107,8 @@ fn depart_walks() {
         assert_eq!(on.word(&mut gpu, LOSERS) as usize, losers.len());
         assert_eq!(on.word(&mut gpu, INSERTED), expected.inserted);
         assert_eq!(on.word(&mut gpu, EDGES_ALREADY), 0);
+        let longest = [5, 0][case.name.len() % 2];
+        assert_eq!(on.word(&mut gpu, LONGEST), if first { longest } else { case.longest });
         assert_eq!(on.word(&mut gpu, DEPART_FAULT), NONE);
         assert_eq!(on.word(&mut gpu, HUBS) != 0, !first || case.begun.iter().any(|b| b.at_hub));
         let parity = case.scratch.round as usize & 1;
@@ -184,7 +188,6 @@ fn mark_chains() {
                 words: on.words.view(),
                 stride: on.stride as u32,
                 piece_limit: 1,
-                longest: case.longest,
             };
             run::<MarkChains>(&mut gpu, EXACT, 2, &arguments);
             let expected = case.mark(&walkers);

@@ -17,7 +17,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "f4635a8a3bb356148782ee4f40df78649aef7ef044ca84a715787b67e7827cfb";
+    source "bfef18498faa5f2d68cc92b97076a240e9071901e29ed0f3dc2dd064a15f9fbc";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -30,18 +30,17 @@ define_kernel! {
         8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
-        32: both pairs: View<'a, [u32; 2]>,
-        40: both words: View<'a, u32>,
+        32: both even_pairs: View<'a, [u32; 2]>,
+        40: both odd_pairs: View<'a, [u32; 2]>,
+        48: both words: View<'a, u32>,
     }
-    values {
-        48: stride: u32,
-    }
-    argument_bytes 52;
+    values {}
+    argument_bytes 56;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "e6ab1be1dbef2b592446a6671ffc02e6195e16c1b10ea9e25c6145e15f2cd145";
+    source "7cd91ba07ee3d64b79d6ae690017e194bbcaa2e637a9db28aa575538b6cf0f69";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -84,19 +83,19 @@ define_kernel! {
         16: read positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
         32: read lost: View<'a, u32>,
-        40: both pairs: View<'a, [u32; 2]>,
-        48: both words: View<'a, u32>,
+        40: both even_pairs: View<'a, [u32; 2]>,
+        48: both odd_pairs: View<'a, [u32; 2]>,
+        56: both words: View<'a, u32>,
     }
     values {
-        56: stride: u32,
-        60: slots: u32,
+        64: slots: u32,
     }
-    argument_bytes 64;
+    argument_bytes 68;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "44901f4dbcb095d83bff2b6c593817eade859ca5a6e7028f2d1e9efb022e5e04";
+    source "1a15b305b9422cd9c0771c20e59d32946c9aafd90419d848ea3dcc2bdc55610c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -149,12 +148,14 @@ define_kernel! {
         96: most: u32,
         100: crowd: u32,
         104: most_spokes: u32,
+        108: longest: u32,
+        112: least: u32,
     }
-    argument_bytes 108;
+    argument_bytes 116;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "2549f3ddad4665fc43be4d0bb414b609325aab510b24ff0f4e04c75ca41aae02";
+    source "edb8a69a9c107726966b7f249fc267a981e49daa8b334f674e6e0812687a39b2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -252,20 +253,20 @@ define_kernel! {
         0: far_both triangles: View<'a, u32>,
         8: far_both links: View<'a, u32>,
         16: both state: View<'a, u32>,
-        24: both pairs: View<'a, [u32; 2]>,
-        32: both spokes: View<'a, u32>,
-        40: both degrees: View<'a, u32>,
-        48: both words: View<'a, u32>,
+        24: both even_pairs: View<'a, [u32; 2]>,
+        32: both odd_pairs: View<'a, [u32; 2]>,
+        40: both spokes: View<'a, u32>,
+        48: both degrees: View<'a, u32>,
+        56: both words: View<'a, u32>,
     }
     values {
-        56: stride: u32,
-        60: least: u32,
+        64: least: u32,
     }
-    argument_bytes 64;
+    argument_bytes 68;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ad804ab5d458958304ff9e9afcd161e5d67cda322452c13fd0acc199ea964583";
+    source "594ea514e7f82b937d7b77e55d6f310bf90ebd6eb48e07535180305874a73403";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -319,7 +320,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "9766220ead06c963db45cbdafaf23ba9fd5b0f08ab926282d4122145dbe90623";
+    source "519f7c8b20088df807313ac6272e35c69d0cdf45d3f89d6b3479679c9d34e134";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -346,13 +347,12 @@ define_kernel! {
     values {
         104: stride: u32,
         108: piece_limit: u32,
-        112: longest: u32,
     }
-    argument_bytes 116;
+    argument_bytes 112;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ad58145cacb243a554065581274369cf6f4a7474b8fae063bdf553a3e098f726";
+    source "e413ac95ff23bd28a0f949d87c31a5ee827eb37a97a84c97c0eca32a07727ced";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -405,28 +405,28 @@ define_kernel! {
         8: far_both links: View<'a, u32>,
         16: read positions: View<'a, [u32; 4]>,
         24: both state: View<'a, u32>,
-        32: both pairs: View<'a, [u32; 2]>,
-        40: both spokes: View<'a, u32>,
-        48: both degrees: View<'a, u32>,
-        56: maybe_read counter: Option<View<'a, u32>>,
-        64: both words: View<'a, u32>,
+        32: both even_pairs: View<'a, [u32; 2]>,
+        40: both odd_pairs: View<'a, [u32; 2]>,
+        48: both spokes: View<'a, u32>,
+        56: both degrees: View<'a, u32>,
+        64: maybe_read counter: Option<View<'a, u32>>,
+        72: both words: View<'a, u32>,
     }
     values {
-        72: stride: u32,
-        76: limit: u32,
-        80: least: u32,
-        84: most: u32,
-        88: most_pairs: u32,
-        92: inner: u32,
-        96: long_chain: u32,
-        100: most_times: u32,
-        104: usual_rounds: u32,
+        80: limit: u32,
+        84: least: u32,
+        88: most: u32,
+        92: most_pairs: u32,
+        96: inner: u32,
+        100: long_chain: u32,
+        104: most_times: u32,
+        108: usual_rounds: u32,
     }
-    argument_bytes 108;
+    argument_bytes 112;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e04504fd42a96a3e36725072f08a24ba1ff9238985165c5323de0f57854bf7f2";
+    source "05105a5de202a0d21a33f603270686a88f194dc2f4113227bdc3cc0b744bb507";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -536,13 +536,12 @@ define_kernel! {
     }
     values {
         104: piece_limit: u32,
-        108: longest: u32,
     }
-    argument_bytes 112;
+    argument_bytes 108;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "fb2b6ee97201d5ff37c2165e773a3d465bbb9c63783556aaf94fba9f88285f29";
+    source "377f6560b658fc2ff241ea854fb9878f8720d7b8c0fc11702d046bf52f7f154e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

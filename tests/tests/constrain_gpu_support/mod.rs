@@ -16,6 +16,7 @@ pub const EXACT: &[(&str, u32)] = &[("ARITHMETIC", 1)];
 /// Places of words, as in `insert.glsl`.
 pub const INSERTED: usize = 1;
 pub const REBUILT: usize = 39;
+pub const LONGEST: usize = 40;
 pub const GOES_ON: usize = 3;
 pub const INNER_LIMIT: usize = 4;
 pub const OUTER: usize = 2;
@@ -225,7 +226,7 @@ pub struct On {
     pub lost: Buffer<u32>,
     pub counts: Buffer<u32>,
     pub state: Buffer<[u32; 4]>,
-    pub pairs: Buffer<[u32; 2]>,
+    pub pairs: [Buffer<[u32; 2]>; 2],
     pub words: Buffer<u32>,
 }
 
@@ -237,7 +238,8 @@ impl On {
         let stride = slots;
         let mesh = Mesh::with_slots(&gpu.device, case.start.positions.len(), slots).unwrap();
         mesh.upload(&mut gpu.engine, &case.start.mesh, &case.start.positions).unwrap();
-        let mut all = [0; 40];
+        let mut all = [0; 44];
+        all[LONGEST] = case.longest;
         all[ROUND] = case.scratch.round;
         all[CANDIDATES + parity] = case.pairs.len() as u32;
         all[DEPART_FAULT] = NONE;
@@ -246,8 +248,8 @@ impl On {
             (all[STOLEN], all[HELD], all[HELD_ROUND]) = (1, case.scratch.held as u32, case.scratch.round);
         }
         words.iter().for_each(|&(place, word)| all[place] = word);
-        let mut pairs = vec![[7; 2]; 2 * stride];
-        pairs[parity * stride..][..case.pairs.len()].copy_from_slice(&case.pairs);
+        let mut pairs = [vec![[7; 2]; stride], vec![[7; 2]; stride]];
+        pairs[parity][..case.pairs.len()].copy_from_slice(&case.pairs);
         let Scratch { owner, claims, stamps, .. } = &case.scratch;
         let one = |t: usize| {
             let claims = if parity == 0 { [claims[t], NONE] } else { [NONE, claims[t]] };
@@ -270,7 +272,7 @@ impl On {
             lost: gpu.buffer(&case.known(&[], &[])),
             counts: gpu.buffer(&vec![0; case.start.positions.len().max(1)]),
             state: gpu.buffer(&state),
-            pairs: gpu.buffer(&pairs),
+            pairs: pairs.map(|pairs| gpu.buffer(&pairs)),
             words: gpu.buffer(&all),
         }
     }
@@ -287,7 +289,7 @@ impl On {
     /// The pairs of rounds of a parity, in order.
     pub fn pairs(&self, gpu: &mut Gpu, parity: usize) -> Vec<[u32; 2]> {
         let count = self.word(gpu, CANDIDATES + parity) as usize;
-        sorted(&gpu.fetch(self.pairs.view())[parity * self.stride..][..count])
+        sorted(&gpu.fetch(self.pairs[parity].view())[..count])
     }
 
     pub fn mesh(&self, gpu: &mut Gpu) -> GhostMesh {

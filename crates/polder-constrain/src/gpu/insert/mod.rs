@@ -28,11 +28,11 @@
 //! Departures from the reference, none of which shows in the result: only pairs are listed, not triangles; a pair that was not
 //! flipped and of which no triangle has changed is not looked at again.
 
-use super::pieces::{self, Begun, Grid, Walkers};
+mod rounds;
+
+use super::pieces::{self, Grid};
 use crate::kernels::*;
-use crate::reference::{
-    HUB, INNER_ROUNDS, LONG_CHAIN, LONGEST_REBUILT, MOST_SPOKES, MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS,
-};
+use crate::reference::{INNER_ROUNDS, LEAST_REBUILT, LONGEST_REBUILT, MOST_SUB_CONSTRAINTS};
 use crate::{Fault, InsertReport};
 use polder_flip::gpu::{Arithmetic, Mesh};
 use polder_vulkan::{
@@ -41,9 +41,9 @@ use polder_vulkan::{
 
 const NONE: u32 = u32::MAX;
 const WORKGROUP: u32 = 256;
-const WORDS: usize = 40;
-/// Outer rounds before the host looks, and after that.
-const FIRST: u32 = 5;
+const WORDS: usize = 44;
+/// Outer rounds before the host looks: where all goes by flips, and where chains may be rebuilt; and after that.
+const FIRST: [u32; 2] = [4, 6];
 const BATCH: u32 = 4;
 /// Fewer pairs than these are left to the tail, which keeps them up to four times as many.
 const FEW: u32 = 256;
@@ -89,11 +89,13 @@ pub struct Rounds {
     pub outer: u32,
     /// At most [`LONGEST_REBUILT`].
     pub longest: u32,
+    /// If so many are no edges.
+    pub least: u32,
 }
 
 impl Default for Rounds {
     fn default() -> Self {
-        Self { inner: INNER_ROUNDS, outer: u32::MAX, longest: LONGEST_REBUILT }
+        Self { inner: INNER_ROUNDS, outer: u32::MAX, longest: LONGEST_REBUILT, least: LEAST_REBUILT }
     }
 }
 
@@ -119,7 +121,8 @@ pub struct Buffers {
     slots: usize,
     /// By triangle: the least key that claims it, in even rounds and again in odd ones; its stamp; and whose it is.
     state: Buffer<[u32; 4]>,
-    pairs: Buffer<[u32; 2]>,
+    /// Of even rounds, and of odd ones: two buffers of half the size find room where one does not.
+    pairs: [Buffer<[u32; 2]>; 2],
     walkers: Buffer<u32>,
     firsts: Buffer<u32>,
     runs: Buffer<u32>,
@@ -132,7 +135,7 @@ pub struct Buffers {
 impl Buffers {
     /// Before there are pairs: by vertex how many sub-constraints end there.
     fn counts(&self, vertices: usize) -> Result<View<'_, u32>, Error> {
-        self.pairs.view().cast::<u32>().slice(0..vertices)
+        self.pairs[0].view().cast::<u32>().slice(0..vertices)
     }
 
     /// Gives all of it; see [`Buffer::give`].
@@ -141,7 +144,7 @@ impl Buffers {
             words.give(pool);
         }
         self.state.give(pool);
-        self.pairs.give(pool);
+        self.pairs.iter().for_each(|pairs| pairs.give(pool));
     }
 }
 
@@ -247,7 +250,8 @@ impl Stage {
     pub fn estimate(sub_constraints: usize, pieces: usize, slots: usize) -> Estimate {
         Estimate::new()
             .buffer::<[u32; 4]>("triangles of chains", slots)
-            .buffer::<[u32; 4]>("pairs", slots)
+            .buffer::<[u32; 2]>("pairs of even rounds", slots)
+            .buffer::<[u32; 2]>("pairs of odd rounds", slots)
             .buffer::<u32>("walkers", sub_constraints)
             .buffer::<u32>("first edges crossed", sub_constraints)
             .buffer::<u32>("pieces of walkers", sub_constraints)
@@ -273,7 +277,10 @@ impl Stage {
         Ok(Buffers {
             slots,
             state: Buffer::new(device, "triangles of chains", slots)?,
-            pairs: Buffer::new(device, "pairs", 2 * slots)?,
+            pairs: [
+                Buffer::new(device, "pairs of even rounds", slots)?,
+                Buffer::new(device, "pairs of odd rounds", slots)?,
+            ],
             walkers: Buffer::new(device, "walkers", sub_constraints)?,
             firsts: Buffer::new(device, "first edges crossed", sub_constraints)?,
             runs: Buffer::new(device, "pieces of walkers", sub_constraints)?,
@@ -337,8 +344,8 @@ impl Stage {
             let why = format!("{why}; {vertices} vertices, spokes of {with_spokes}");
             return Err(Error::Recording { command: "constrain", why });
         }
-        if count > 0 && vertices > 4 * buffers.slots {
-            let why = format!("{vertices} vertices, and slots for a mesh over no more than {}", 4 * buffers.slots);
+        if count > 0 && vertices > 2 * buffers.slots {
+            let why = format!("{vertices} vertices, and slots for a mesh over no more than {}", 2 * buffers.slots);
             return Err(Error::Recording { command: "constrain", why });
         }
         let piece_room = buffers.piece_walked.len() / 2;
@@ -356,7 +363,8 @@ impl Stage {
                 let left = buffers.words.slice(Word::Left as usize..Word::Left as usize + 1)?;
                 // Each outer round inserts or flips something, or looks at a tail of thousands of flips.
                 let mut recorded = Ok(());
-                recording.repeat_ahead("insert constraints", left, u32::MAX, FIRST, BATCH, |round| {
+                let first = FIRST[usize::from(count >= rounds.least as usize)];
+                recording.repeat_ahead("insert constraints", left, u32::MAX, first, BATCH, |round| {
                     recorded = self.record_outer(round, mesh, buffers, input, rounds);
                 });
                 recorded?;
@@ -375,148 +383,6 @@ impl Stage {
         recording.fill(buffers.words.slice(Word::DepartFault as usize..Word::Rebuilt as usize)?, NONE);
         recording.fill(buffers.state.view().cast(), NONE);
         recording.fill(buffers.counts(vertices)?, 0);
-        Ok(())
-    }
-
-    fn record_outer(
-        &self,
-        recording: &mut Recording,
-        mesh: &Mesh,
-        buffers: &Buffers,
-        input: Input<'_>,
-        Rounds { inner, longest, .. }: Rounds,
-    ) -> Result<(), Error> {
-        let groups = [self.pace.groups, 1, 1];
-        let (triangles, links, positions) = (mesh.corners(), mesh.twins(), mesh.positions().cast());
-        let (state, words) = (buffers.state.view().cast(), buffers.words.view());
-        let Input { spokes, degrees, .. } = input;
-        let (walkers, lost) = (buffers.walkers.view(), buffers.lost.view());
-        let (firsts, runs, piece_walked) = (buffers.firsts.view(), buffers.runs.view(), buffers.piece_walked.view());
-        let list = input.pieces.map_or(&buffers.no_pieces, |(_, list)| list);
-        let (pieces, piece_count, piece_limit) = (list.pieces(), list.count(), list.pieces().len() as u32);
-        let sub_constraints = input.sub_constraints.cast();
-        let pairs = buffers.pairs.view().cast();
-        let counts = buffers.counts(mesh.vertices())?;
-        let (stride, limit) = (buffers.slots as u32, input.sub_constraints.len() as u32);
-        let most = (3 * mesh.capacity()) as u32;
-        let arguments = ListWalkersArgs {
-            triangles,
-            links,
-            sub_constraints,
-            counter: input.count,
-            spokes,
-            degrees,
-            walkers,
-            lost,
-            counts,
-            words,
-            limit,
-            most,
-            crowd: HUB,
-        };
-        recording.dispatch(&self.list, groups, &arguments);
-        let arguments = DepartWalksArgs {
-            triangles,
-            links,
-            positions,
-            sub_constraints,
-            spokes,
-            degrees,
-            counts,
-            walkers,
-            firsts,
-            lost,
-            state,
-            words,
-            most,
-            crowd: HUB,
-            most_spokes: MOST_SPOKES,
-        };
-        recording.dispatch(&self.depart, groups, &arguments);
-        recording.dispatch(&self.admit, groups, &AdmitWalksArgs { walkers, firsts, lost, state, words });
-        if let Some((grid, list)) = input.pieces {
-            let listed = buffers.words.slice(Word::Walkers as usize..Word::Walkers as usize + 1)?;
-            let begun = Some(Begun { firsts, barred: lost });
-            let walkers = Walkers { ends: input.sub_constraints, list: walkers, listed, runs, spokes, degrees, begun };
-            self.pieces.record(recording, mesh, &walkers, grid, list);
-        }
-        let arguments = MarkChainsArgs {
-            triangles,
-            links,
-            positions,
-            sub_constraints,
-            walkers,
-            firsts,
-            runs,
-            pieces,
-            piece_count,
-            piece_walked,
-            lost,
-            state,
-            words,
-            stride,
-            piece_limit,
-            longest,
-        };
-        recording.dispatch(&self.mark, groups, &arguments);
-        let arguments = RebuildChainsArgs {
-            triangles,
-            links,
-            positions,
-            walkers,
-            runs,
-            pieces: pieces.cast(),
-            piece_count,
-            piece_walked,
-            lost,
-            state,
-            spokes,
-            degrees,
-            words,
-            piece_limit,
-            longest,
-        };
-        recording.dispatch(&self.rebuild, groups, &arguments);
-        let arguments = ConfigurePairsArgs {
-            triangles,
-            links,
-            positions,
-            state,
-            lost,
-            pairs,
-            words,
-            stride,
-            slots: mesh.capacity() as u32,
-        };
-        recording.dispatch(&self.configure, groups, &arguments);
-        for _ in 0..inner {
-            let least = FEW;
-            let arguments = FlipPairsArgs { triangles, links, state, pairs, spokes, degrees, words, stride, least };
-            recording.dispatch(&self.flip, groups, &arguments);
-            let arguments = AdvancePairsArgs { triangles, links, positions, state, pairs, words, stride };
-            recording.dispatch(&self.advance, groups, &arguments);
-        }
-        let arguments = PairTailArgs {
-            triangles,
-            links,
-            positions,
-            state,
-            pairs,
-            spokes,
-            degrees,
-            counter: input.count,
-            words,
-            stride,
-            limit,
-            least: FEW,
-            most: self.pace.rounds,
-            most_pairs: self.pace.pairs,
-            inner,
-            long_chain: LONG_CHAIN as u32,
-            most_times: MOST_TIMES,
-            usual_rounds: USUAL_ROUNDS as u32,
-        };
-        recording.dispatch(&self.tail, [1, 1, 1], &arguments);
         Ok(())
     }
 }
