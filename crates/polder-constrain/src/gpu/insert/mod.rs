@@ -115,7 +115,7 @@ pub struct Input<'a> {
     pub pieces: Option<(Grid, &'a pieces::Buffers)>,
 }
 
-/// What the stage holds beside the mesh: 32 bytes a slot, 16 a sub-constraint and 4 a piece.
+/// What the stage holds beside the mesh: 32 bytes a slot, 16 a sub-constraint and 8 a piece.
 #[derive(Debug)]
 pub struct Buffers {
     slots: usize,
