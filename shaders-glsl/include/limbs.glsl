@@ -164,42 +164,31 @@ const int NOTHING = -0x7fffffff;
 // The sign of incircle, or with three points behind an unused one of orient2d, or UNCLEAR. As `polder_predicates::wide`, from
 // each point in turn as the base until one is clear: around it all bits are kept.
 //
-// A term is off by less than 2^-57 of it: 2^-60 by each of four differences, 2^-62 by each of two products, 2^-60 by the
-// product of these. That is less than 4 units of the sum, and it may lose two more units where it is added. So with 12 terms a
-// sum 72 units away from zero has the right sign. A difference is zero only if it is exactly zero, so without any term the
-// determinant is.
+// Around the base the determinant is the sum over cyclic i, j, k of (x_i^2 + y_i^2) (x_j y_k - x_k y_j), or with i = 0 the
+// second factor alone. Factors are computed anew for each term: kernels that hardly ever come here would pay for code and
+// registers that keep them.
+//
+// A term is off by less than 2^-57 of it: 2^-60 by each of four differences, 2^-62, 2^-61 and 2^-60 by the products. That is
+// less than 4 units of the sum, and it may lose two more units where it is added. So with 12 terms a sum 72 units away from
+// zero has the right sign. A difference is zero only if it is exactly zero, so without any term the determinant is.
 int wide_sign(uvec4 points[4], bool incircle) {
     [[dont_unroll]] for (uint base = 0u; base < 4u; base++) {
-        Wide x[3], y[3];
-        for (uint k = 0u; k < 3u; k++) {
-            x[k] = difference(points[k].xy, points[3].xy);
-            y[k] = difference(points[k].zw, points[3].zw);
-        }
         int64_t sum = 0l;
         int top = NOTHING;
-        [[dont_unroll]] for (uint k = 0u; k < (incircle ? 3u : 1u); k++) {
-            Wide left = multiply(x[1], y[2]);
-            Wide right = multiply(x[2], y[1]);
-            right.negative = !right.negative;
-            if (incircle) {
-                Wide lifting = multiply(x[0], x[0]);
-                add_term(multiply(left, lifting), sum, top);
-                add_term(multiply(right, lifting), sum, top);
-                lifting = multiply(y[0], y[0]);
-                add_term(multiply(left, lifting), sum, top);
-                add_term(multiply(right, lifting), sum, top);
-            } else {
-                add_term(left, sum, top);
-                add_term(right, sum, top);
+        uvec4 from = points[3];
+        [[dont_unroll]] for (uint term = 0u; term < (incircle ? 12u : 2u); term++) {
+            bool right = (term & 1u) != 0u;
+            uint lifting_axis = (term >> 1) & 1u, i = term >> 2;
+            uint j = (i + (right ? 2u : 1u)) % 3u, k = (i + (right ? 1u : 2u)) % 3u;
+            Wide value;
+            [[dont_unroll]] for (uint factor = 0u; factor < (incircle ? 4u : 2u); factor++) {
+                uvec4 point = points[factor == 0u ? j : (factor == 1u ? k : i)];
+                bool second = factor == 1u || (factor > 1u && lifting_axis != 0u);
+                Wide next = difference(second ? point.zw : point.xy, second ? from.zw : from.xy);
+                value = factor == 0u ? next : multiply(value, next);
             }
-            Wide first = x[0];
-            x[0] = x[1];
-            x[1] = x[2];
-            x[2] = first;
-            first = y[0];
-            y[0] = y[1];
-            y[1] = y[2];
-            y[2] = first;
+            value.negative = value.negative != right;
+            add_term(value, sum, top);
         }
         if (top == NOTHING) {
             return 0;

@@ -25,7 +25,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "6da6afc764013b54b4f88f494dc635851c6c84db3a0ce8f9285c4e6455b4a6b8";
+    source "e6e84f0c0021308fd7b6b78c7adbc69f00b5af81722a43de0190eaf5d5641efe";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -40,7 +40,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "7cd91ba07ee3d64b79d6ae690017e194bbcaa2e637a9db28aa575538b6cf0f69";
+    source "a5c4b8932c2eab9c9deabc58097dc6be11c1454a2f50cb443555cdefe4af7577";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -95,7 +95,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "1a15b305b9422cd9c0771c20e59d32946c9aafd90419d848ea3dcc2bdc55610c";
+    source "ea6e8a292461d78f49a7ff571f1bccc8fbe28ba8040349a4d83f6f37ad3deea8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -121,7 +121,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8756afa970e443a2ab73e8e415840e78fa11f926dde6068f8d95642a67d489e0";
+    source "d5c8d81362100a02ca3be9262c9af5ae666caac93a4c74db42499e5cb49a1a9d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -155,7 +155,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "edb8a69a9c107726966b7f249fc267a981e49daa8b334f674e6e0812687a39b2";
+    source "84b34c6f5ebd73eb630280346d9c80db9606f25395040a8fb0072fe82464ed0c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -191,7 +191,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "460252788438896e1393256e34ed30b25501e795d192c66257a0e4c2a8ed7ab6";
+    source "1c5269e482753907e8dc5bdb08ae51a9128e3ec98a2f83f6487ec9d4a9ca1c19";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -352,7 +352,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e413ac95ff23bd28a0f949d87c31a5ee827eb37a97a84c97c0eca32a07727ced";
+    source "f4580a3eb5de3f1b707e1b3510dcc986465729e8412f5c7a9d4ade35670a2f56";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -426,7 +426,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "05105a5de202a0d21a33f603270686a88f194dc2f4113227bdc3cc0b744bb507";
+    source "254dc82bac696868893aadc8df0bb49fc76f377ed862c3a433771b68fa8be132";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -506,7 +506,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "5174fcc00417951d890c81d9b7fc83fc62a295d3b5bf3cac017609ccfa062ece";
+    source "7f96fefb482600bf857b4954924bc67db5554bd2576c6ad0766432ea78afd2c9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -541,7 +541,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "377f6560b658fc2ff241ea854fb9878f8720d7b8c0fc11702d046bf52f7f154e";
+    source "7eadcb17a0aebb3718d643a8d8579073ad58fb000a0f12c5fceb03c195c0bf52";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -566,7 +566,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "b5e1e73572898c384547f33333330ce91da3338f69fd963be5ee85b715806ae1";
+    source "4a8adf9c4850d620d90080e4af2b03d0cd6b5cb94c372cd16bc98792e1b726c3";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -592,7 +592,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "70a26b61bb376b93be4bc063d8d74070c75960cf3767d71c346b6b11234922d8";
+    source "9006e575bc6c01696e374c4c7c457c1499e5174fe152149bc234879852f827b1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -645,7 +645,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "9afc0a215bc5ba24bc45f78fc8cf6ce0ff342a87c613cac2355bd21eeb5255b8";
+    source "55517f5b91398d7a8f960c892c49d8714b859b008fa4fa4758f14118eed573c9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

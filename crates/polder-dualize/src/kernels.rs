@@ -129,7 +129,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8d5aecf16039f09cb7979c55a6b902541916000d0c8c369ab2773853ce6c50f7";
+    source "fe9a1febea40e14a69735b323bc23b4914b794b79e9116376b8d56cbe1c7ec62";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -201,7 +201,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "0a4520194ac69e177c0e282b45c28bd05888aa35f1ee15b8a3d18030ba660d80";
+    source "5a1f3fe8d7bed6e3fabdc2deaddee999af386837cff30e433f17a633fd1446f9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -249,7 +249,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "af989d06f4a429ccd581af524dc1c428b40b4982232f159c90ea1061ba709e72";
+    source "fb5935d4edb8c74aeb6cb9af7ed5a313562c1c2dc1376c628570e833aed80bb2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -285,7 +285,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "dee92d69735dc7874d15b3c19f870de4b4374e234eeb7f4fad965ca9ff545dd5";
+    source "8bfce4ed8dde604fc51fb121c45af754e7a93a4c36f155b7230e46daa07b8fd1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -386,7 +386,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "5f7da7765aecb3930f6134a95cdc5b92123cf273b7693e14a11d78a4db999c89";
+    source "dff9499524d55333bae7d0cb28c544466fd0fe6571f0b76ae080e19303a90021";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -413,7 +413,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "7b6b5e5761337f50b34f0b64b263947c04a93b7166b531ea6f7b7913b5e35c4f";
+    source "10b417f3e3d7eb5e66abc15a2615426f8215d9f5d26d891de9b74c6cd9cdd9f4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -515,7 +515,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1, "FEW"(2) = 1024];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "1a4415e57fc1a90a3c1526edaa1281a8964a220913822801f2cbd78d61f1e34e";
+    source "e35ff719a319d05ba4796bdd4172c154803b310661256cca57c20813a5b1d92e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -642,6 +642,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "a3612a72fb8a9971c26f8f75765055222e64e6db9993882f2d1c4c0d387be1b2";
+    source "eaa827685b203a07b6712a19f1538c40658029f29ed702a28fef75aded7a50e2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

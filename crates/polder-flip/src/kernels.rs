@@ -26,7 +26,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "02e175e6c2cfe2cd5518317da971a581c483ce9c2f2085f891d84437c02870e3";
+    source "1b669a0091109cf8e7ca40d7ba99c10e0aa6882bcbe4dfad117a954ce4bd6434";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -83,7 +83,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "b0575c7d77d98a1a034d3b5c68d4cbc72560c529d911dcf2962178b971243a18";
+    source "16316b4d670183acafc345d606b2a694e8e85b22db967572859e71a4d3882453";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -103,7 +103,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "d085dbe1ca62b9b1ed44985ede1c3a71df904917054e61b421dd18e6857bf602";
+    source "028ee63df1aced8287d74e1e9e0dfb012c77cfeefd277cf9c2a97b79ef9c857e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -122,7 +122,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ea2ead8f7f261dfb9b16542f960b75d27e60dbd9dcf3a2f324cf661e1f97b5cb";
+    source "720d300307bd445c9e852249728f7ef2453caea0dc4a87c273d64884cbbf2239";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -172,7 +172,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "f5b53ff49655df0554f2e8a2acd0cd4f17a8e32e919dfed24f1c05af5735273b";
+    source "9ba3de052a14860279e190a5d6aabf123cbd96c22020ed515a6f510c69fbfc91";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -199,6 +199,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "11bcba52d9e0894d3d9e2d10676354915a4f31c9401af517fcbebdb4fb6823ab";
+    source "e363ad913cce8e0641d9740c6f0b14ca14caee3782224c2c33f53dbf793d28cc";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
