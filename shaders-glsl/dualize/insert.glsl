@@ -40,6 +40,18 @@ const uint ROUND = 3u;
 const uint GROUPS = 4u;
 // Workgroups that are done with the last kernel of a round.
 const uint FINISHED = 8u;
+// Points that wait, as long as the mesh has not fallen behind; once it has; and rounds in a row in which it seemed to.
+const uint WAITING_STEADY = 12u;
+const uint WAITING_BEHIND = 24u;
+const uint SLOW = 7u;
+const uint SLOW_ROUNDS = 2u;
+// Once it has: workgroups for all triangles, for a round's ghost flips and for kernels of one, or zero.
+const uint MESH_GROUPS = 36u;
+const uint WIDE_GROUPS = 40u;
+const uint ONE_GROUP = 44u;
+// Edges that were tested in this round, and how many of them were illegal.
+const uint TESTED = 48u;
+const uint ILLEGAL = 49u;
 // The corners of the triangle that sectors are seen from, and its slot.
 const uint CENTER = 9u;
 const uint CENTER_SLOT = 28u;
@@ -68,6 +80,13 @@ uint precedence(uint point) {
     x ^= x * 0xb82f1e52u;
     x ^= x * 0xc7afe638u;
     return x ^ (x * 0x8d22f6e6u);
+}
+
+// So many items are taken, or so many workgroups.
+void set_groups(U32 words, uint place, uvec3 size) {
+    for (uint k = 0u; k < 3u; k++) {
+        words.at[place + k] = size[k];
+    }
 }
 
 // The two slots of a point.

@@ -133,10 +133,7 @@ void main() {
     words.at[FINISHED] = 0u;
     words.at[INSERTED_BEFORE] = words.at[INSERTED];
     uint next = words.at[NEXT];
-    uvec3 size = groups_of(next);
-    for (uint k = 0u; k < 3u; k++) {
-        words.at[GROUPS + k] = size[k];
-    }
+    set_groups(words, GROUPS, groups_of(next));
     words.at[WAITING] = next;
     words.at[NEXT] = 0u;
     words.at[PARITY] ^= 1u;

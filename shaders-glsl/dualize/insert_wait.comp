@@ -29,12 +29,14 @@ void main() {
     if (i == 0u) {
         // Without a finite triangle there is nothing to walk through: no round has anything to do.
         uint first = slot == NONE ? 0u : count;
-        uvec3 groups = groups_of(first);
+        set_groups(words, GROUPS, groups_of(first));
         for (uint k = 0u; k < 3u; k++) {
-            words.at[GROUPS + k] = groups[k];
             words.at[CENTER + k] = slot == NONE ? 0u : apex(triangles, 3u * slot + k);
         }
         words.at[WAITING] = first;
+        words.at[WAITING_STEADY] = first;
+        words.at[WAITING_BEHIND] = 0u;
+        words.at[SLOW] = 0u;
         words.at[NEXT] = 0u;
         words.at[PARITY] = 0u;
         words.at[ROUND] = 1u;

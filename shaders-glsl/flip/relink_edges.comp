@@ -8,6 +8,7 @@ layout(push_constant, std430) uniform Args {
     Rows links;
     ReadU32x2 illegal;
     U32 words;
+    MaybeU32 note; // takes the number of edges tested in this round, and how many of them were illegal
     uint parity;
 };
 
@@ -17,6 +18,10 @@ void main() {
     if (item_index() == 0u) {
         words.at[ILLEGAL_COUNT(parity)] = 0u;
         words.at[ROUND] = round;
+        if (present(note)) {
+            note.at[0] = words.at[LISTED_COUNT];
+            note.at[1] = words.at[TAKEN_COUNT];
+        }
     }
     for (uint i = item_index(); i < end; i += item_stride()) {
         uvec2 edge = illegal.at[i >> 2];

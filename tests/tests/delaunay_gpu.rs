@@ -18,6 +18,9 @@ fn without_constraints(pslg: &Pslg) -> Pslg {
     Pslg::new(pslg.points().to_vec(), Vec::new()).unwrap()
 }
 
+/// Waits for the host of one triangulation, whatever the points are.
+const MOST_WAITS: u32 = 10;
+
 #[test]
 fn every_family_has_the_digest_of_the_cpu() {
     let mut gpu = open(Arithmetic::Filtered);
@@ -220,7 +223,7 @@ fn every_large_family_has_the_digest_of_the_cpu() {
                 let seconds: f64 = output.report.stages.iter().map(|stage| stage.seconds).sum();
                 let (digest, waits) = (output.triangulation.digest(), device.host_waits);
                 println!("{name}: {digest}, {waits} waits, {:.1} ms", 1e3 * seconds);
-                digest == expected.digest() && output.triangulation == expected
+                waits <= MOST_WAITS && digest == expected.digest() && output.triangulation == expected
             }
             Err(error) => {
                 println!("{name}: {error}");

@@ -143,7 +143,7 @@ fn rounds_one_by_one() {
             gpu.engine.upload(list.edges().slice(0..edges.len()).unwrap(), &edges).unwrap();
             let mut recording = gpu.recording();
             on.tally.record_clear(&mut recording);
-            stage.record_round(&mut recording, &on.mesh, &on.buffers, &list, &on.tally).unwrap();
+            stage.record_round(&mut recording, &on.mesh, &on.buffers, &list, &on.tally, None).unwrap();
             let read = on.tally.read(&mut recording);
             let report = read.report(&gpu.run(&recording));
             let (tests, rounds) = (active.tests(), u64::from(!active.is_empty()));

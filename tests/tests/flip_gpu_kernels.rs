@@ -263,10 +263,12 @@ fn relink_edges() {
             illegal.as_flattened(),
             &[(0, count), (TAKEN, count), (ROUND_NOW, case.scratch.round)],
         );
+        let note = gpu.buffer(&[7_u32; 2]);
         let arguments = RelinkEdgesArgs {
             links: on.mesh.twins(),
             illegal: on.list.view().cast(),
             words: on.words.view(),
+            note: Some(note.view()),
             parity: 0,
         };
         run::<RelinkEdges>(&mut gpu, &[], 2, &arguments);
@@ -276,6 +278,7 @@ fn relink_edges() {
         assert!(on.notes(&mut gpu, &case.scratch), "{}", case.name);
         assert!(case.scratch.claims.iter().all(|&claim| claim == NONE), "{}", case.name);
         assert_eq!([on.word(&mut gpu, 0), on.word(&mut gpu, ROUND)], [0, case.scratch.round]);
+        assert_eq!(gpu.fetch(note.view()), [0, count], "{}", case.name);
     }
 }
 

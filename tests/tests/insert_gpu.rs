@@ -102,6 +102,25 @@ fn few_sites_and_many_points() {
 }
 
 #[test]
+fn meshes_that_fall_behind() {
+    let (mut gpu, stages) = stages();
+    for (turn, (name, pslg)) in [
+        ("concentric circles", polder_io::generate::concentric(1_500, 4, 1)),
+        ("points beside a line", polder_io::generate::near_collinear(1_500, 1, 1)),
+        ("mixed magnitudes", polder_io::generate::mixed_magnitudes(1_500, 1)),
+        ("concentric circles", polder_io::generate::concentric(4_000, 4, 2)),
+        ("cocircular", polder_io::generate::cocircular(3_000, 1)),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let (case, expected) = Case::new(pslg.points(), &Options::default());
+        assert!(expected.flips.rounds > 2 * expected.rounds, "{name}: {} in {}", expected.flips, expected.rounds);
+        assert_inserted(&mut gpu, &stages[turn % 2], name, &case, &expected);
+    }
+}
+
+#[test]
 fn sizes_around_nothing_and_a_workgroup() {
     let (mut gpu, stages) = stages();
     for count in [1, 2, 3, 4, 5, 255, 256, 257, 258, 259, 260, 513, 20_000] {

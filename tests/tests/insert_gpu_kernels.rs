@@ -75,7 +75,9 @@ fn insert_wait() {
         assert!(gpu.fetch(on.waiting.view())[..round.waiting.len()] == round.waiting, "{name}");
         let words = gpu.fetch(on.words.view());
         assert_eq!(words[CENTER..CENTER + 3], round.mesh.triangles[round.begun.center_slot as usize], "{name}");
-        assert_eq!([words[WAITING], words[ROUND], words[LOST]], [on.limit, 1, NONE], "{name}");
+        let waiting = [WAITING, WAITING_STEADY, WAITING_BEHIND].map(|at| words[at]);
+        assert_eq!(waiting, [on.limit, on.limit, 0], "{name}");
+        assert_eq!([words[ROUND], words[LOST]], [1, NONE], "{name}");
         assert_eq!(words[GROUPS..GROUPS + 3], [on.limit.div_ceil(256), 1, 1], "{name}");
         assert_eq!(gpu.fetch(on.mesh.slots())[0] as usize, round.mesh.slots());
     }
@@ -234,17 +236,99 @@ fn insert_relink() {
 #[test]
 fn insert_turn() {
     let mut gpu = Gpu::open();
-    for reflex in [0, 1, 3] {
-        let mut before = words();
-        before[WAITING] = 17;
-        before[GROUPS..GROUPS + 3].fill(1);
+    const SLOTS: u32 = 1000;
+    let mut turn = |before: [u32; WORDS], reflex: u32| {
         let (pending, words) = (gpu.buffer(&[reflex]), gpu.buffer(&before));
-        let arguments = InsertTurnArgs { reflex: pending.view(), words: words.view() };
-        run::<InsertTurn>(&mut gpu, 1, &arguments);
-        let found = gpu.fetch(words.view());
-        let open = u32::from(reflex != 0);
-        assert_eq!([found[OPEN_HULL], found[WAITING]], [open, expected::insert_turn(17, reflex)]);
+        run::<InsertTurn>(&mut gpu, 1, &InsertTurnArgs { reflex: pending.view(), words: words.view(), slots: SLOTS });
+        gpu.fetch(words.view())
+    };
+    let mut fell_behind = 0;
+    for (waiting, inserted) in [(0, 900), (1, 3), (400, 800), (400, 802), (60_000, 5), (4_000_000_000, 90_000_000)] {
+        let counts = [0_u32, 255, 256, 257, 1875, 30_000, 124_999_999, 4_000_000_000];
+        for (edges, slow) in counts.into_iter().flat_map(|edges| [0, 1, 2].map(|slow| (edges, slow))) {
+            let bounds = [edges / 16, edges / 2 - edges / 128];
+            for illegal in bounds.into_iter().flat_map(|bound| [bound.saturating_sub(1), bound, bound + 1]) {
+                let mut before = words();
+                [before[WAITING], before[INSERTED], before[SLOW]] = [waiting, inserted, slow];
+                [before[TESTED], before[TESTED + 1]] = [edges, illegal];
+                before[GROUPS..GROUPS + 3].fill(9);
+                before[MESH_GROUPS..MESH_GROUPS + 3].fill(0);
+                let found = turn(before, 0);
+                let counted = expected::insert_turn(slow, [edges, illegal], waiting, inserted);
+                let rounds = if slow < expected::BEHIND { counted } else { slow };
+                let behind = rounds >= expected::BEHIND;
+                let [just, groups] = [u32::from(behind && slow < expected::BEHIND), 9];
+                assert_eq!(found[SLOW], rounds);
+                let left = if behind { [0, waiting] } else { [waiting, 0] };
+                assert_eq!([WAITING, WAITING_STEADY, WAITING_BEHIND].map(|at| found[at]), [waiting, left[0], left[1]]);
+                assert_eq!(found[GROUPS..GROUPS + 3], [groups * (1 - just); 3]);
+                assert_eq!(found[MESH_GROUPS..MESH_GROUPS + 3], [just * SLOTS.div_ceil(256), just, just]);
+                fell_behind += just;
+            }
+        }
+    }
+    assert!(fell_behind > 10, "{fell_behind}");
+    // A hull that is not closed, if one was to be closed.
+    for (reflex, slow, closed, open) in
+        [(0, 0, 0, 0), (1, 0, 0, 1), (3, 0, 0, 1), (3, 2, 0, 0), (3, 2, 1, 1), (0, 2, 1, 0)]
+    {
+        let mut before = words();
+        [before[WAITING], before[SLOW], before[WIDE_GROUPS]] = [17, slow, closed];
+        before[GROUPS..GROUPS + 3].fill(1);
+        let found = turn(before, reflex);
+        let left = 17 * (1 - open);
+        let steady = if slow == 0 { [left, 0] } else { [0, left] };
+        assert_eq!([found[OPEN_HULL], found[WAITING]], [open, left]);
+        assert_eq!([found[WAITING_STEADY], found[WAITING_BEHIND]], steady);
         assert_eq!(found[GROUPS..GROUPS + 3], [1 - open; 3]);
+    }
+}
+
+#[test]
+fn insert_clear() {
+    let mut gpu = Gpu::open();
+    for (name, mut round) in rounds() {
+        let own: Vec<u32> = round.waiting.iter().flat_map(|&[point, _]| round.slots[point as usize]).collect();
+        // Whatever was there before.
+        for &t in &own {
+            round.mesh.triangles[t as usize] = [2, 1, 0];
+            round.mesh.links[t as usize] = [1, 2, 3];
+        }
+        let on = round.on(&mut gpu, &[], &round.words());
+        let arguments = InsertClearArgs {
+            triangles: on.mesh.corners(),
+            links: on.mesh.twins(),
+            waiting: on.waiting.view(),
+            freed: on.freed.view(),
+            words: on.words.view(),
+            limit: on.limit,
+        };
+        run::<InsertClear>(&mut gpu, round.mesh.slots(), &arguments);
+        expected::insert_clear(&mut round.mesh, &round.slots, &round.waiting);
+        assert!(own.iter().all(|&t| round.mesh.is_deleted(t as usize)), "{name}");
+        assert!(on.mesh.download(&mut gpu.engine).unwrap() == round.mesh, "{name}");
+    }
+}
+
+#[test]
+fn insert_resume() {
+    let mut gpu = Gpu::open();
+    for (waiting, pending) in [(0, 0), (1, 0), (256, 0), (257, 0), (20_000, 0), (20_000, 1), (1, 7), (0, 3)] {
+        let mut before = words();
+        before[WAITING_BEHIND] = waiting;
+        for place in [GROUPS, WIDE_GROUPS, ONE_GROUP] {
+            before[place..place + 3].fill(9);
+        }
+        let (pending_word, words) = (gpu.buffer(&[pending]), gpu.buffer(&before));
+        let arguments = InsertResumeArgs { pending: pending_word.view(), words: words.view(), groups: 64 };
+        run::<InsertResume>(&mut gpu, 1, &arguments);
+        let found = gpu.fetch(words.view());
+        let points = expected::insert_resume(waiting, pending);
+        let some = u32::from(points > 0);
+        assert_eq!(found[GROUPS..GROUPS + 3], [points.div_ceil(256), some, some]);
+        assert_eq!(found[WIDE_GROUPS..WIDE_GROUPS + 3], [64 * some, some, some]);
+        assert_eq!(found[ONE_GROUP..ONE_GROUP + 3], [some; 3]);
+        assert_eq!(found[WAITING_BEHIND], waiting);
     }
 }
 

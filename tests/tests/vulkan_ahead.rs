@@ -170,7 +170,7 @@ fn whatever_was_guessed_the_results_are_those_of_plain_loops() {
                 7 => Op::Read,
                 _ => {
                     row += 1;
-                    let first = if guess_well { (rounds[row - 1] as u32).max(1) } else { 1 + below(8) };
+                    let first = if guess_well { rounds[row - 1] as u32 } else { below(9) };
                     let ahead = guess_well || below(5) > 0;
                     Op::Loop { row: row - 1, first, batch: 1 + below(4), ahead, inner: !guess_well && below(8) == 0 }
                 }
@@ -208,6 +208,9 @@ fn a_wait_for_each_bad_guess_and_one_for_all_good_ones() {
         // The second loop goes on by 4 and by 8, and those behind it begin with 4 rounds more.
         ([3, 2, 2, 1, 1], 3, [3, 14, 6, 5, 5]),
         ([1, 9, 2, 5, 1], 2, [5, 13, 6, 9, 5]),
+        // A loop without first rounds gets none on account of others.
+        ([1, 9, 2, 5, 0], 2, [5, 13, 6, 9, 0]),
+        ([3, 9, 0, 5, 0], 2, [3, 9, 4, 9, 0]),
     ] {
         let (_, report) = world.run(&ops(firsts), rounds, true);
         assert_eq!(report.rounds.iter().map(|(_, rounds)| *rounds).collect::<Vec<_>>(), counted);

@@ -129,7 +129,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "fe9a1febea40e14a69735b323bc23b4914b794b79e9116376b8d56cbe1c7ec62";
+    source "4c3c2318403c453df55c8753e25a1c49aab76eb4d3f9a6d3a9602d6934f30259";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -153,7 +153,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "3fd5313b16e8974d2e52081d2b24045009c1fab779f740ec6b76e70d21260bf8";
+    source "4fcbc49cbd0f5abf0f4007f1fc3ff718bffd4fe04bb4324bcfe0a4da6c0b3152";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -176,7 +176,29 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "f6e5ad42908a577e6e38ab54083934e1b29c733a1821f5276b725b5671003cad";
+    source "17f033c0c6afa4a58023f11be57b0a792391a724a331bd0996086a50dd732d95";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
+    /// Insertion into a mesh that fell behind, before all of it is tested: the slots of points that wait are free. Until then nobody
+    /// has looked at them.
+    InsertClear(InsertClearArgs) = "insert_clear";
+    buffers {
+        0: far_both triangles: View<'a, u32>,
+        8: far_both links: View<'a, u32>,
+        16: read waiting: View<'a, [u32; 2]>,
+        24: read freed: View<'a, [u32; 2]>,
+        32: read words: View<'a, u32>,
+    }
+    values {
+        40: limit: u32,
+    }
+    argument_bytes 44;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256];
+    capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
+    source "4b443fc71a458e23468e009fd529ac37aa1e561ce389f2cf58671f5f7a9a6f29";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -201,7 +223,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "5a1f3fe8d7bed6e3fabdc2deaddee999af386837cff30e433f17a633fd1446f9";
+    source "be26932e9c2fcf6127b927a07753d65110e5163d4d0bc2486dcefe1829cf03f9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -227,7 +249,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "90e4802bab51fa66d120d479640239e7ba9bd3dd10cdd95229d102bbc5b071c0";
+    source "defaaac15482257bdae0e3869b590ef95b9c98b08ef5e137cd90190d44890c5d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -249,7 +271,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "fb5935d4edb8c74aeb6cb9af7ed5a313562c1c2dc1376c628570e833aed80bb2";
+    source "e1ad6f398697bdc2eab9a7249bf93d4d88a5bf89d281f5a1923248dfb9e16a5a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -285,7 +307,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8bfce4ed8dde604fc51fb121c45af754e7a93a4c36f155b7230e46daa07b8fd1";
+    source "504dac40c7f7a640a529ad9360cf8450daf3dd5e234e91db34c79c3cec7866e5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -313,23 +335,44 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "5822ae2a9a9c63bd994bd22cd7ff0dcced4948034da54088147710ad51934496";
+    source "3b1b3d42a02533f4f8140ec035b5b3c4912a5d25a93a88970523de7752cdab64";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
 define_kernel! {
-    /// Insertion, the end of a round: a hull that is not closed by now ends it all.
+    /// Insertion into a mesh that fell behind, after some flips: if none are left to be made, a round follows, else it is left out.
+    InsertResume(InsertResumeArgs) = "insert_resume";
+    buffers {
+        0: read pending: View<'a, u32>,
+        8: both words: View<'a, u32>,
+    }
+    values {
+        16: groups: u32,
+    }
+    argument_bytes 20;
+    workgroup [Constant(0), Fixed(1), Fixed(1)];
+    constants ["WORKGROUP"(0) = 256];
+    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
+    source "baf81fb789ad989c5fab7734636a63480046de8867797b25bd58b54531bd2c34";
+    compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
+}
+
+define_kernel! {
+    /// Insertion, the end of a round: whether the mesh falls behind, so that flips have to be made before the next one. A hull that
+    /// is not closed by now ends it all.
     InsertTurn(InsertTurnArgs) = "insert_turn";
     buffers {
         0: read reflex: View<'a, u32>,
         8: both words: View<'a, u32>,
     }
-    values {}
-    argument_bytes 16;
+    values {
+        16: slots: u32,
+    }
+    argument_bytes 20;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "529a36009f8a30850714dd01c890fa511af648f55d3123ef2b361bc6a98c6597";
+    source "560853103cb211bc872045faadaebb9c6fcff7518fee478ab91460dc8d4f6853";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -354,7 +397,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "b320671aadb128a23b07fd75aec3cacfc1e54b2fcb2d08dcdc4c0a0e35e78a0f";
+    source "a0a555b77e4c2a8eea19d886d10d80c77e12f1edcc71eb2e290a0a383fed6cad";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -134,15 +134,16 @@ define_kernel! {
         0: far_both links: View<'a, u32>,
         8: read illegal: View<'a, [u32; 2]>,
         16: both words: View<'a, u32>,
+        24: maybe_both note: Option<View<'a, u32>>,
     }
     values {
-        24: parity: u32,
+        32: parity: u32,
     }
-    argument_bytes 28;
+    argument_bytes 36;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "401a42966001e8e838b39b98d17b87efb201a5f84b6811afa4f113b92977142e";
+    source "6e5ba1dc2697907578a06c7ef0a264274d7ef918c6980a8b2222281f91ade3bb";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

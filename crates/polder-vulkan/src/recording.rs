@@ -269,7 +269,8 @@ impl Recording {
     /// was not done, nothing behind it has run: the device itself leaves it out. The host then runs that loop on, and what
     /// follows, in the same way: by `batch` rounds, twice as many after the next look, up to 64 times. So a good guess
     /// costs no wait, and a bad one hardly more than the plain loop. Loops behind one that was not done begin with `first`
-    /// and `batch` rounds.
+    /// and `batch` rounds; but a loop with no `first` rounds, which most inputs do not need, is begun only if its counter is
+    /// not zero.
     ///
     /// Dispatches behind such a loop take their sizes from memory, fills and copies become kernels; that is nearly free.
     /// Within a repeated body, or where the body repeats something itself, it is a plain loop whose first batch has
@@ -320,7 +321,7 @@ impl Recording {
         }
         let body = inner.steps;
         let ahead = ahead && !self.nested && !body.iter().any(|step| matches!(step, Step::Repeat(_)));
-        let (first, batch) = (first.max(1), batch.max(1));
+        let (first, batch) = (if ahead { first } else { first.max(1) }, batch.max(1));
         self.steps.push(Step::Repeat(Repeat { name, counter: touch, read, bound, first, batch, ahead, body }));
     }
 

@@ -82,7 +82,7 @@ impl<'e, 'o> Run<'e, 'o> {
                 Step::Repeat(repeat) if repeat.ahead => {
                     let guard = Guard { step: next, name: repeat.name, rounds: 0, misses: 0 };
                     // Where one guess was too low those behind it likely are: and all that follows is sent again for each.
-                    let more = if halted.is_some() { repeat.batch } else { 0 };
+                    let more = if halted.is_some() && repeat.first > 0 { repeat.batch } else { 0 };
                     self.run_ahead(repeat, repeat.first.saturating_add(more), guard)?;
                 }
                 step => self.steps(std::slice::from_ref(step))?,

@@ -12,13 +12,21 @@ use polder_tests::point_families;
 use polder_voronoi::{Options, Resolution};
 use polder_vulkan::{Buffer, Kernel, Shader};
 
-/// Places of words, as in `insert.glsl`.
+/// How many words there are, and their places, as in `insert.glsl`.
+pub(crate) const WORDS: usize = 52;
 pub(crate) const WAITING: usize = 0;
 pub(crate) const NEXT: usize = 1;
 pub(crate) const PARITY: usize = 2;
 pub(crate) const ROUND: usize = 3;
 pub(crate) const GROUPS: usize = 4;
+pub(crate) const SLOW: usize = 7;
 pub(crate) const FINISHED: usize = 8;
+pub(crate) const WAITING_STEADY: usize = 12;
+pub(crate) const WAITING_BEHIND: usize = 24;
+pub(crate) const MESH_GROUPS: usize = 36;
+pub(crate) const WIDE_GROUPS: usize = 40;
+pub(crate) const ONE_GROUP: usize = 44;
+pub(crate) const TESTED: usize = 48;
 pub(crate) const CENTER: usize = 9;
 pub(crate) const SITES: usize = 13;
 pub(crate) const CHAIN: usize = 14;
@@ -32,8 +40,8 @@ pub(crate) const ENDS: usize = 30;
 pub(crate) const GIVEN: usize = 32;
 
 /// Words before anything has run.
-pub(crate) fn words() -> [u32; 40] {
-    let mut words = [0; 40];
+pub(crate) fn words() -> [u32; WORDS] {
+    let mut words = [0; WORDS];
     words[CENTER_SLOT..CENTER_SLOT + 8].fill(NONE);
     words
 }
@@ -89,7 +97,7 @@ impl Round {
         expected::insert_graft(mesh, slots, waiting, places, claims, 1)
     }
 
-    pub(crate) fn words(&self) -> [u32; 40] {
+    pub(crate) fn words(&self) -> [u32; WORDS] {
         let mut words = words();
         words[WAITING] = self.waiting.len() as u32;
         words[ROUND] = 1;
@@ -100,7 +108,7 @@ impl Round {
         words
     }
 
-    pub(crate) fn on(&self, gpu: &mut Gpu, places: &[[u32; 2]], words: &[u32; 40]) -> On {
+    pub(crate) fn on(&self, gpu: &mut Gpu, places: &[[u32; 2]], words: &[u32; WORDS]) -> On {
         let mesh = Mesh::with_slots(&gpu.device, self.positions.len(), self.mesh.slots()).unwrap();
         mesh.upload(&mut gpu.engine, &self.mesh, &self.positions).unwrap();
         let mut records = gpu.fetch(mesh.records());

@@ -15,16 +15,21 @@
 //!    the next round.
 //!
 //! A round with nothing to do is a row of empty dispatches. The host looks after as many rounds as most inputs need.
+//!
+//! The last kernel of a round sees whether the mesh falls behind. Once it has, a second loop goes on in place of the first: a
+//! turn of it flips, many rounds at once, and inserts only if no illegal edge is left; what is not its turn is dispatched in
+//! no workgroup. Most inputs never come there, so nothing of it is recorded before the host has looked.
 
 use crate::DualizeError;
 use crate::kernels::*;
 use polder_flip::FlipReport;
 use polder_flip::gpu::{self as flips, Arithmetic, EdgeList, Mesh, Tally, TallyRead};
+use polder_flip::reference::round_bound;
 use polder_vulkan::{Buffer, Device, Error, Estimate, Kernel, Pool, ReadBack, Recording, RunReport, View, groups_for};
 
 const NONE: u32 = u32::MAX;
 const WORKGROUP: u32 = 256;
-const WORDS: usize = 40;
+const WORDS: usize = 52;
 /// Words from there on that begin as [`NONE`].
 const UNSET: usize = 8;
 /// Most workgroups that look for the ends of a chain.
@@ -32,18 +37,25 @@ const END_GROUPS: u32 = 1024;
 /// Rounds before the host looks, and after that: clusters take 19, rings 15.
 const FIRST: u32 = 5;
 const BATCH: u32 = 15;
+/// Turns before the host looks again, in a mesh that fell behind.
+const BATCH_BEHIND: u32 = 16;
 
 /// Places of words that the host knows, as in `insert.glsl`.
 #[derive(Clone, Copy)]
 enum Word {
-    Waiting = 0,
     Round = 3,
     Groups = 4,
+    WaitingSteady = 12,
     Inserted = 16,
     Duplicates = 17,
     Lost = 18,
     OpenHull = 19,
+    WaitingBehind = 24,
     CenterSlot = 28,
+    MeshGroups = 36,
+    WideGroups = 40,
+    OneGroup = 44,
+    Tested = 48,
 }
 
 /// What is to be inserted into a mesh, as [`ToInsert`](crate::reference::ToInsert), but for the slots.
@@ -171,6 +183,8 @@ pub struct Stage {
     graft: Kernel<InsertGraft>,
     relink: Kernel<InsertRelink>,
     turn: Kernel<InsertTurn>,
+    clear: Kernel<InsertClear>,
+    resume: Kernel<InsertResume>,
 }
 
 impl Stage {
@@ -202,6 +216,8 @@ impl Stage {
             graft: Kernel::new(device, &workgroup)?,
             relink: Kernel::new(device, &workgroup)?,
             turn: Kernel::new(device, &workgroup)?,
+            clear: Kernel::new(device, &workgroup)?,
+            resume: Kernel::new(device, &workgroup)?,
         })
     }
 
@@ -265,12 +281,29 @@ impl Stage {
         flips.1.list().record_clear(recording);
         buffers.hull.record_clear(recording);
         buffers.flips.record_clear(recording);
-        let waiting = buffers.word(Word::Waiting, 1)?;
         // Each round inserts a point.
         let bound = (points as u32).saturating_add(1);
         let mut failed = None;
+        let waiting = buffers.word(Word::WaitingSteady, 1)?;
         recording.repeat_ahead("insert", waiting, bound, FIRST, BATCH, |round| {
             failed = self.record_round(round, mesh, flips, buffers, input).err();
+        });
+        let groups = buffers.word(Word::MeshGroups, 3)?;
+        let arguments = InsertClearArgs {
+            triangles: mesh.corners(),
+            links: mesh.twins(),
+            waiting: buffers.waiting.view(),
+            freed: input.freed,
+            words: buffers.words.view(),
+            limit: mesh.vertices() as u32,
+        };
+        recording.dispatch_indirect(&self.clear, groups, &arguments);
+        flips.0.record_test(recording, mesh, flips.1, &buffers.flips, groups)?;
+        // Each turn inserts a point or flips an edge.
+        let bound = bound.saturating_add(u32::try_from(round_bound(slots)).unwrap_or(u32::MAX));
+        let waiting = buffers.word(Word::WaitingBehind, 1)?;
+        recording.repeat_ahead("insert behind", waiting, bound, 0, BATCH_BEHIND, |turn| {
+            failed = failed.take().or(self.record_turn(turn, mesh, flips, buffers, input).err());
         });
         failed.map_or(Ok(()), Err)?;
         Ok(Read {
@@ -337,6 +370,7 @@ impl Stage {
         recording.dispatch(&self.join, [groups, 1, 1], &arguments);
     }
 
+    /// One round, and one round of flips.
     fn record_round(
         &self,
         round: &mut Recording,
@@ -345,9 +379,58 @@ impl Stage {
         buffers: &Buffers,
         input: Input<'_>,
     ) -> Result<(), Error> {
+        let hull = flips.1.list();
+        self.record_insertion(round, mesh, hull, buffers, input)?;
+        let note = Some(buffers.word(Word::Tested, 2)?);
+        flips.0.record_round(round, mesh, flips.1, &buffers.edges, &buffers.flips, note)?;
+        // A hull is closed often, and little is to be done.
+        flips.0.record_close_hull(round, mesh, flips.1, Some((hull, 0)), &buffers.hull)?;
+        self.record_end(round, mesh, flips.1, buffers)
+    }
+
+    /// Where the mesh fell behind: rounds of flips and, if none are left to be made, a round.
+    fn record_turn(
+        &self,
+        turn: &mut Recording,
+        mesh: &Mesh,
+        flips: (&flips::Stage, &flips::Buffers),
+        buffers: &Buffers,
+        input: Input<'_>,
+    ) -> Result<(), Error> {
+        let (hull, words) = (flips.1.list(), buffers.words.view());
+        flips.0.record_rounds(turn, mesh, flips.1, &buffers.edges, &buffers.flips)?;
+        let arguments = InsertResumeArgs { pending: flips.1.pending()?, words, groups: flips.0.groups() };
+        turn.dispatch(&self.resume, [1, 1, 1], &arguments);
+        self.record_insertion(turn, mesh, hull, buffers, input)?;
+        let sizes = [buffers.word(Word::WideGroups, 3)?, buffers.word(Word::OneGroup, 3)?];
+        flips.0.record_close_hull_told(turn, mesh, flips.1, (hull, 0), &buffers.hull, sizes)?;
+        self.record_end(turn, mesh, flips.1, buffers)
+    }
+
+    fn record_end(
+        &self,
+        round: &mut Recording,
+        mesh: &Mesh,
+        flips: &flips::Buffers,
+        buffers: &Buffers,
+    ) -> Result<(), Error> {
+        let (words, slots) = (buffers.words.view(), mesh.capacity() as u32);
+        round.dispatch(&self.turn, [1, 1, 1], &InsertTurnArgs { reflex: flips.pending()?, words, slots });
+        Ok(())
+    }
+
+    /// The four kernels of a round.
+    fn record_insertion(
+        &self,
+        round: &mut Recording,
+        mesh: &Mesh,
+        hull: &EdgeList,
+        buffers: &Buffers,
+        input: Input<'_>,
+    ) -> Result<(), Error> {
         let (triangles, links) = (mesh.corners(), mesh.twins());
         let (waiting, places, claims) = (buffers.waiting.view(), buffers.places.view(), buffers.claims.view());
-        let (words, hull) = (buffers.words.view(), flips.1.list());
+        let words = buffers.words.view();
         let groups = buffers.word(Word::Groups, 3)?;
         let (limit, freed) = (mesh.vertices() as u32, input.freed);
         let arguments = InsertLocateArgs {
@@ -382,11 +465,6 @@ impl Stage {
             hull_limit: hull.limit(),
         };
         round.dispatch_indirect(&self.relink, groups, &arguments);
-        flips.0.record_round(round, mesh, flips.1, &buffers.edges, &buffers.flips)?;
-        // A hull is closed often, and little is to be done.
-        flips.0.record_close_hull(round, mesh, flips.1, Some((hull, 0)), &buffers.hull)?;
-        let arguments = InsertTurnArgs { reflex: flips.1.pending()?, words };
-        round.dispatch(&self.turn, [1, 1, 1], &arguments);
         Ok(())
     }
 }

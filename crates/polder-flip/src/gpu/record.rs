@@ -3,7 +3,7 @@
 use super::{Buffers, EdgeList, Mesh, Stage, Tally};
 use crate::kernels::*;
 use crate::reference::round_bound;
-use polder_vulkan::{Error, Recording, groups_for};
+use polder_vulkan::{Error, Kernel, Recording, Shader, View, groups_for};
 
 const NONE: u32 = u32::MAX;
 /// Invocations of a workgroup, the same in all kernels.
@@ -23,6 +23,21 @@ enum Scope {
     Hull = 1,
 }
 
+/// How many workgroups a dispatch has.
+#[derive(Clone, Copy)]
+enum Size<'a> {
+    Known([u32; 3]),
+    /// By three words on the device.
+    Told(View<'a, u32>),
+}
+
+fn dispatch<S: Shader>(recording: &mut Recording, kernel: &Kernel<S>, size: Size<'_>, arguments: &S::Args<'_>) {
+    match size {
+        Size::Known(groups) => recording.dispatch(kernel, groups, arguments),
+        Size::Told(groups) => recording.dispatch_indirect(kernel, groups, arguments),
+    }
+}
+
 /// All that rounds work on.
 #[derive(Clone, Copy)]
 struct Round<'a> {
@@ -30,6 +45,8 @@ struct Round<'a> {
     buffers: &'a Buffers,
     tally: &'a Tally,
     scope: Scope,
+    /// Of kernels that stride, and of tails.
+    sizes: [Size<'a>; 2],
 }
 
 impl Stage {
@@ -55,8 +72,8 @@ impl Stage {
         tally: &Tally,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "flip")?;
-        let round = Round { mesh, buffers, tally, scope: Scope::All };
-        self.test_mesh(recording, round);
+        let round = self.round(mesh, buffers, tally, Scope::All);
+        self.test_mesh(recording, round, Size::Known(groups_for(mesh.capacity(), WORKGROUP)));
         let bound = u32::try_from(round_bound(mesh.capacity())).unwrap_or(u32::MAX);
         recording.repeat_ahead("flip", buffers.pending()?, bound, 1, 3, |body| {
             for turn in 0..WIDE {
@@ -67,9 +84,61 @@ impl Stage {
         Ok(())
     }
 
+    /// Tests every edge of the mesh, in as many workgroups as three words say: none, or enough for its slots. What is illegal
+    /// waits for [`Stage::record_rounds`]. Adds to the tally.
+    ///
+    /// # Errors
+    ///
+    /// If the buffers are for fewer slots.
+    pub fn record_test(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        tally: &Tally,
+        groups: View<'_, u32>,
+    ) -> Result<(), Error> {
+        buffers.fit(mesh, "flip test")?;
+        self.test_mesh(recording, self.round(mesh, buffers, tally, Scope::All), Size::Told(groups));
+        Ok(())
+    }
+
+    /// Some rounds, as [`reference::flip_round`](crate::reference::flip_round) makes them: over a list in which no edge is
+    /// twice, which is emptied, or over what earlier rounds left; the list has to be empty then. Afterwards
+    /// [`Buffers::pending`] says how many illegal edges are left: to be recorded again until that is zero. Adds to the tally.
+    ///
+    /// # Errors
+    ///
+    /// If the buffers are for fewer slots.
+    pub fn record_rounds(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        list: &EdgeList,
+        tally: &Tally,
+    ) -> Result<(), Error> {
+        buffers.fit(mesh, "flip rounds")?;
+        let round = self.round(mesh, buffers, tally, Scope::All);
+        self.test_list(recording, round, list, false);
+        self.flip(recording, round, Some((list, false)), 0, FEW);
+        self.hand_on(recording, round, 0);
+        for turn in 1..WIDE {
+            self.advance(recording, round, turn % 2, FEW);
+        }
+        self.tail(recording, round, FEW, self.pace.rounds);
+        Ok(())
+    }
+
+    /// Workgroups of kernels that stride over their items.
+    pub fn groups(&self) -> u32 {
+        self.pace.groups
+    }
+
     /// Exactly one round over a list in which no edge is twice, and none that was freed, as
     /// [`reference::flip_round`](crate::reference::flip_round) does, but that nothing remembers which edges the next round
-    /// were to test; the list is emptied. Adds to the tally, a round only if the list was not empty.
+    /// were to test; the list is emptied. Adds to the tally, a round only if the list was not empty. Two words take a note of
+    /// how many edges were tested, and how many of them were illegal.
     ///
     /// # Errors
     ///
@@ -81,18 +150,20 @@ impl Stage {
         buffers: &Buffers,
         list: &EdgeList,
         tally: &Tally,
+        note: Option<View<'_, u32>>,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "flip round")?;
-        let round = Round { mesh, buffers, tally, scope: Scope::All };
+        let round = self.round(mesh, buffers, tally, Scope::All);
         self.test_list(recording, round, list, false);
         self.flip(recording, round, Some((list, false)), 0, 0);
         let arguments = RelinkEdgesArgs {
             links: mesh.twins(),
             illegal: buffers.illegal(0),
             words: buffers.words.view(),
+            note,
             parity: 0,
         };
-        recording.dispatch(&self.relink_edges, [self.pace.groups, 1, 1], &arguments);
+        dispatch(recording, &self.relink_edges, round.sizes[0], &arguments);
         Ok(())
     }
 
@@ -114,7 +185,32 @@ impl Stage {
         tally: &Tally,
     ) -> Result<(), Error> {
         buffers.fit(mesh, "close hull")?;
-        let round = Round { mesh, buffers, tally, scope: Scope::Hull };
+        self.close_hull(recording, self.round(mesh, buffers, tally, Scope::Hull), list);
+        Ok(())
+    }
+
+    /// The same over a list, with sizes that the device tells, three words each: of kernels that stride ([`Stage::groups`])
+    /// and of those of one workgroup; or zero, and nothing is done, also not to what flips have left.
+    ///
+    /// # Errors
+    ///
+    /// If the buffers are for fewer slots.
+    pub fn record_close_hull_told(
+        &self,
+        recording: &mut Recording,
+        mesh: &Mesh,
+        buffers: &Buffers,
+        list: (&EdgeList, usize),
+        tally: &Tally,
+        sizes: [View<'_, u32>; 2],
+    ) -> Result<(), Error> {
+        buffers.fit(mesh, "close hull")?;
+        let round = Round { sizes: sizes.map(Size::Told), ..self.round(mesh, buffers, tally, Scope::Hull) };
+        self.close_hull(recording, round, Some(list));
+        Ok(())
+    }
+
+    fn close_hull(&self, recording: &mut Recording, round: Round<'_>, list: Option<(&EdgeList, usize)>) {
         match list {
             Some((list, wide)) => {
                 self.test_list(recording, round, list, true);
@@ -125,7 +221,7 @@ impl Stage {
                 }
             }
             None => {
-                self.test_mesh(recording, round);
+                self.test_mesh(recording, round, Size::Known(groups_for(round.mesh.capacity(), WORKGROUP)));
                 for turn in 0..HULL_WIDE {
                     self.advance(recording, round, turn % 2, FEW);
                 }
@@ -134,7 +230,11 @@ impl Stage {
         for _ in 0..self.pace.hull_tails {
             self.tail(recording, round, NONE, self.pace.hull_rounds);
         }
-        Ok(())
+    }
+
+    fn round<'a>(&self, mesh: &'a Mesh, buffers: &'a Buffers, tally: &'a Tally, scope: Scope) -> Round<'a> {
+        let sizes = [[self.pace.groups, 1, 1], [1, 1, 1]].map(Size::Known);
+        Round { mesh, buffers, tally, scope, sizes }
     }
 
     /// One wide round, from its claims to those of the next, if so many edges are illegal.
@@ -144,8 +244,8 @@ impl Stage {
     }
 
     /// Every edge, and the claims of the first round.
-    fn test_mesh(&self, recording: &mut Recording, round: Round<'_>) {
-        let Round { mesh, buffers, tally, scope } = round;
+    fn test_mesh(&self, recording: &mut Recording, round: Round<'_>, size: Size<'_>) {
+        let Round { mesh, buffers, tally, scope, .. } = round;
         let arguments = TestMeshArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
@@ -158,12 +258,12 @@ impl Stage {
             scope: scope as u32,
             parity: 0,
         };
-        recording.dispatch(&self.test_mesh, groups_for(mesh.capacity(), WORKGROUP), &arguments);
+        dispatch(recording, &self.test_mesh, size, &arguments);
     }
 
     /// A list, in which edges may repeat, and the claims of a round over it.
     fn test_list(&self, recording: &mut Recording, round: Round<'_>, list: &EdgeList, repeats: bool) {
-        let Round { mesh, buffers, tally, scope } = round;
+        let Round { mesh, buffers, tally, scope, sizes } = round;
         let arguments = TestEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
@@ -179,7 +279,7 @@ impl Stage {
             scope: scope as u32,
             parity: 0,
         };
-        recording.dispatch(&self.test_edges, [self.pace.groups, 1, 1], &arguments);
+        dispatch(recording, &self.test_edges, sizes[0], &arguments);
     }
 
     fn flip(
@@ -190,7 +290,7 @@ impl Stage {
         parity: usize,
         least: u32,
     ) {
-        let Round { mesh, buffers, tally, .. } = round;
+        let Round { mesh, buffers, tally, sizes, .. } = round;
         let repeats = list.is_some_and(|(_, repeats)| repeats);
         let list = list.map(|(list, _)| list);
         let arguments = FlipEdgesArgs {
@@ -207,11 +307,11 @@ impl Stage {
             least,
             parity: parity as u32,
         };
-        recording.dispatch(&self.flip_edges, [self.pace.groups, 1, 1], &arguments);
+        dispatch(recording, &self.flip_edges, sizes[0], &arguments);
     }
 
     fn hand_on(&self, recording: &mut Recording, round: Round<'_>, parity: usize) {
-        let Round { mesh, buffers, tally, scope } = round;
+        let Round { mesh, buffers, tally, scope, sizes } = round;
         let arguments = AdvanceEdgesArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
@@ -224,11 +324,11 @@ impl Stage {
             scope: scope as u32,
             parity: parity as u32,
         };
-        recording.dispatch(&self.advance_edges, [self.pace.groups, 1, 1], &arguments);
+        dispatch(recording, &self.advance_edges, sizes[0], &arguments);
     }
 
     fn tail(&self, recording: &mut Recording, round: Round<'_>, least: u32, most: u32) {
-        let Round { mesh, buffers, tally, scope } = round;
+        let Round { mesh, buffers, tally, scope, sizes } = round;
         let arguments = FlipTailArgs {
             triangles: mesh.corners(),
             links: mesh.twins(),
@@ -243,6 +343,6 @@ impl Stage {
             most,
             most_flips: if scope == Scope::Hull { NONE } else { self.pace.flips },
         };
-        recording.dispatch(&self.flip_tail, [1, 1, 1], &arguments);
+        dispatch(recording, &self.flip_tail, sizes[1], &arguments);
     }
 }

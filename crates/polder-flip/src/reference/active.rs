@@ -26,6 +26,7 @@ pub struct Active {
     pub(super) legal: Vec<u32>,
     pub(super) winners: Vec<u32>,
     pub(super) tests: u64,
+    pub(super) illegal: u64,
 }
 
 impl Default for Active {
@@ -45,6 +46,7 @@ impl Active {
             legal: Vec::new(),
             winners: Vec::new(),
             tests: 0,
+            illegal: 0,
         }
     }
 
@@ -94,6 +96,11 @@ impl Active {
     /// How many tests all rounds so far have made.
     pub fn tests(&self) -> u64 {
         self.tests
+    }
+
+    /// How many of the edges that the last round tested were illegal.
+    pub fn illegal(&self) -> u64 {
+        self.illegal
     }
 
     pub(super) fn fit(&mut self, mesh: &GhostMesh) {

@@ -88,6 +88,7 @@ pub fn flip_round(mesh: &mut GhostMesh, positions: &[DVec2], active: &mut Active
         }
         illegal
     });
+    active.illegal = candidates.len() as u64;
 
     // Step 3.
     let mut flips = 0;

@@ -27,6 +27,9 @@ pub const WON: u32 = 1 << 30;
 /// The bits of a place that name a half-edge.
 pub const PLACE: u32 = WON - 1;
 
+/// Rounds in a row after which a mesh that seems to fall behind has fallen behind.
+pub const BEHIND: u32 = 2;
+
 /// What [`insert_begin`] finds.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Begun {
@@ -307,9 +310,28 @@ fn renamed(mesh: &GhostMesh, claims: &[[u32; 3]], round: u32, g: u32) -> Option<
     })
 }
 
-/// How many points go on waiting: none where so many edges of the hull are still reflex.
-pub fn insert_turn(waiting: u32, reflex: u32) -> u32 {
-    if reflex == 0 { waiting } else { 0 }
+/// How many rounds in a row, this one included, the mesh seems to fall behind, after `before` of them; from [`BEHIND`] on it
+/// has. In the round flips were tried with so many edges around new vertices, of which so many were illegal; so many points
+/// wait, and so many are inserted.
+///
+/// Around a new vertex of a Delaunay triangulation more than half of the edges are illegal. In slivers that wait for their
+/// flips fewer are, and ever fewer the more slivers there are. Few edges, and those of the last rounds, say nothing; where
+/// next to none is illegal none need be flipped.
+pub fn insert_turn(before: u32, [edges, illegal]: [u32; 2], waiting: u32, inserted: u32) -> u32 {
+    let telling = edges >= 256 && edges >= waiting / 32 && waiting >= inserted / 2;
+    if telling && illegal >= edges / 16 && illegal < edges / 2 - edges / 128 { before + 1 } else { 0 }
+}
+
+/// The slots of points that wait become free.
+pub fn insert_clear(mesh: &mut GhostMesh, slots: &[[u32; 2]], waiting: &[[u32; 2]]) {
+    for t in waiting.iter().flat_map(|&[point, _]| slots[point as usize]) {
+        mesh.delete(t as usize);
+    }
+}
+
+/// How many points the next round takes in a mesh that fell behind: all that wait, once no edge is left to be flipped.
+pub fn insert_resume(waiting: u32, pending: u32) -> u32 {
+    if pending == 0 { waiting } else { 0 }
 }
 
 /// The triangles that a place claims.
