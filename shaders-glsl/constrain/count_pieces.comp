@@ -13,7 +13,7 @@ layout(push_constant, std430) uniform Args {
     ReadU32x2 ends; // by walker
     ReadU32 list;   // walkers
     ReadU32 listed; // how many
-    MaybeReadU32 barred; // by walker: whether it does not walk, in the third bit
+    MaybeReadU32 known; // by walker: whether it goes in one piece
     U32 piece_count; // zeros before; the sum in the third word and the fourth
     int64_t low_x;
     int64_t low_y;
@@ -33,7 +33,7 @@ void main() {
     uint mine = 0u;
     for (uint i = item_index(); i < count; i += item_stride()) {
         uint walker = list.at[i];
-        if (!is_barred(barred, walker)) {
+        if (!in_one_piece(known, walker)) {
             uvec2 both = ends.at[walker];
             Point a = point_at(positions, both.x);
             Point b = point_at(positions, both.y);

@@ -90,10 +90,12 @@ void main() {
             if (at_hub) {
                 uint edge = h % 3u;
                 uint mine = scatter(s, OWNER_BITS) << 4;
-                own(state, lost, words, s, mine | (reversed ? NO_EDGE << 2 | edge : edge << 2 | NO_EDGE), h / 3u, stamp, false, true);
+                uint word = mine | (reversed ? NO_EDGE << 2 | edge : edge << 2 | NO_EDGE);
+                uint old = atomicMin(state.at[OWNED(h / 3u)], word);
+                settle_claim(state, lost, words, s, word, old, h / 3u, stamp, false, true);
             }
             firsts.at[s] = h | (reversed ? REVERSED : 0u);
-            if (!reversed) {
+            if (!reversed && !at_hub) {
                 atomicOr(lost.at[s], h / 3u << LOW_SHIFT);
             }
         } else {

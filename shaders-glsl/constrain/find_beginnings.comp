@@ -18,7 +18,6 @@ layout(push_constant, std430) uniform Args {
     ReadU32x2 ends;
     ReadU32 spokes;
     ReadU32 degrees;
-    MaybeReadU32 firsts; // by walker, with the highest bit if it begins at its second end; else that depends on degrees
     ReadU32 seeds;
     U32x4 pieces;
     ReadU32 piece_count;
@@ -137,7 +136,7 @@ void main() {
     for (uint p = item_index(); p < count; p += item_stride()) {
         uvec4 piece = pieces.at[p];
         uvec2 both = ends.at[piece.x];
-        bool reversed = present(firsts) ? (firsts.at[piece.x] & AT_VERTEX) != 0u : degrees.at[both.y] < degrees.at[both.x];
+        bool reversed = degrees.at[both.y] < degrees.at[both.x];
         Point a = point_at(positions, reversed ? both.y : both.x);
         Point b = point_at(positions, reversed ? both.x : both.y);
         i64vec2 from = place_of(a, exponent, low_x, low_y);

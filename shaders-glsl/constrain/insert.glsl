@@ -65,6 +65,8 @@ const uint STOLEN = 11u;
 // Pairs that are left from the rounds before the walks, which stand first in their list, and the last of these rounds.
 const uint HELD = 19u;
 const uint HELD_ROUND = 38u;
+// Walks from hubs that were not whole.
+const uint PARTIAL_WALKS = 41u;
 // What is reported; sums have two words, the low one first.
 const uint EDGES_ALREADY = 20u;
 const uint REBUILT = 39u;
@@ -95,6 +97,8 @@ const uint BARRED = 4u;
 const uint LONG = 8u;
 const uint BY_FLIPS = AT_HUB | LONG;
 #define LOW_SHIFT 4
+// Those that begin at a hub have a count of their walks there instead.
+const uint WALKED_ONCE = 16u;
 const uint DONE = 0xfffffff0u;
 const uint REVERSED = 0x80000000u;
 

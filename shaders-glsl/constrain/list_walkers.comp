@@ -65,7 +65,7 @@ void main() {
             uint known = lost.at[s];
             walks = (known & LOSES) != 0u;
             if (walks) {
-                lost.at[s] = known & BY_FLIPS;
+                lost.at[s] = known & ((known & AT_HUB) != 0u ? ~(LOSES | BARRED) : LONG);
             } else if ((known & (BY_FLIPS | BARRED)) == 0u && known != DONE) {
                 lost.at[s] = DONE;
             }

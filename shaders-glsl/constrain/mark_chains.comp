@@ -22,6 +22,7 @@ layout(push_constant, std430) uniform Args {
     U32 words;
     uint stride;
     uint piece_limit;
+    uint hub_walk; // triangles that the first walk from a hub claims at most
 };
 
 shared uint walked;
@@ -42,6 +43,7 @@ void main() {
         uint begins = NONE;
         uint h = NONE;
         bool walks = false;
+        uint farthest = NONE;
         uint number = 0u;
         uint run;
         uint rest; // the pieces from there on are those after this one
@@ -59,7 +61,14 @@ void main() {
             s = walkers.at[i];
             begins = firsts.at[s];
             h = begins & HALF_EDGE;
-            walks = (lost.at[s] & BARRED) == 0u;
+            uint known = lost.at[s];
+            walks = (known & BARRED) == 0u;
+            if (walks && (known & AT_HUB) != 0u) {
+                uint before = known / WALKED_ONCE;
+                uint64_t triangles = uint64_t(hub_walk) * uint64_t(4u + before) / 4ul << min(before / 16u, 20u);
+                farthest = uint(min(triangles, uint64_t(NONE)));
+                atomicAdd(lost.at[s], WALKED_ONCE);
+            }
             run = walks ? runs.at[s] : NONE;
             rest = run;
             if (run != NONE) {
@@ -86,6 +95,9 @@ void main() {
             bool owns = !later;
             bool has_lost = false;
             bool by_flips = (lost.at[s] & BY_FLIPS) != 0u;
+            // Claims are settled one step later, so that no step waits for them: the triangle, the word, what was there.
+            uvec3 claimed = uvec3(NONE);
+            uvec3 before = uvec3(NONE);
             // No walk crosses an edge twice.
             uint most = 2u * stride;
             for (uint step = 0u; step < most; step++) {
@@ -93,9 +105,16 @@ void main() {
                 if (owns) {
                     uint edge = h % 3u;
                     uint word = mine | (reversed ? entered << 2 | edge : edge << 2 | entered);
-                    has_lost = own(state, lost, words, s, word, h / 3u, stamp, has_lost, by_flips);
+                    claimed = uvec3(h / 3u, word, atomicMin(state.at[OWNED(h / 3u)], word));
                     steps++;
                     if (h == until) {
+                        fault = NONE;
+                        break;
+                    }
+                    if (steps == farthest) {
+                        lose(lost, words, s);
+                        has_lost = true;
+                        atomicAdd(words.at[PARTIAL_WALKS], 1u);
                         fault = NONE;
                         break;
                     }
@@ -110,13 +129,20 @@ void main() {
                 if (w >= DELETED) {
                     break;
                 }
-                int side = orient2d(a, b, point_at(positions, w));
+                Point corner = point_at(positions, w);
+                if (before.x != NONE) {
+                    has_lost = settle_claim(
+                        state, lost, words, s, before.y, before.z, before.x, stamp, has_lost, by_flips);
+                }
+                before = claimed;
+                claimed.x = NONE;
+                int side = orient2d(a, b, corner);
                 if (side == 0) {
                     uint word = mine | (reversed ? entered << 2 | NO_EDGE : NO_EDGE << 2 | entered);
-                    has_lost = own(state, lost, words, s, word, g / 3u, stamp, has_lost, by_flips);
+                    claimed = uvec3(g / 3u, word, atomicMin(state.at[OWNED(g / 3u)], word));
                     steps++;
                     fault = w == ends.y ? NONE : THROUGH_VERTEX;
-                    if (reversed) {
+                    if (reversed && (lost.at[s] & AT_HUB) == 0u) {
                         atomicOr(lost.at[s], g / 3u << LOW_SHIFT);
                     }
                     if (run != NONE) {
@@ -125,6 +151,13 @@ void main() {
                     break;
                 }
                 h = side > 0 ? next_edge(g) : prev_edge(g);
+            }
+            for (uint k = 0u; k < 2u; k++) {
+                if (before.x != NONE) {
+                    has_lost = settle_claim(
+                        state, lost, words, s, before.y, before.z, before.x, stamp, has_lost, by_flips);
+                }
+                before = claimed;
             }
             if (fault != NONE) {
                 atomicMin(words.at[WALK_FAULT], s << 2 | fault);

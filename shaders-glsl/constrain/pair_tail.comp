@@ -76,8 +76,8 @@ void look(bool goes_on, bool fails) {
     if (present(counter)) {
         count = min(counter.at[0], limit);
     }
-    // Each round flips something, or makes an edge of something.
-    uint progress = words.at[INSERTED];
+    // Each round flips something, or makes an edge of something, or has someone walk farther the next time.
+    uint progress = words.at[INSERTED] + words.at[PARTIAL_WALKS];
     for (uint kind = 0u; kind < 3u; kind++) {
         progress += words.at[FLIPS + 2u * kind];
     }

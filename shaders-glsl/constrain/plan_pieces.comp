@@ -12,7 +12,7 @@ layout(push_constant, std430) uniform Args {
     ReadU32x2 ends;   // by walker
     ReadU32 list;     // walkers
     ReadU32 listed;   // how many
-    MaybeReadU32 barred; // by walker: whether it has to wait, in the third bit
+    MaybeReadU32 known; // by walker: whether it goes in one piece
     WriteU32 runs;    // by walker: where its later pieces stand, or NONE
     U32x4 pieces;
     U32 piece_count;  // and behind it how many are wanted, in two words
@@ -30,7 +30,8 @@ void main() {
     uint share = uint(min(all / uint64_t(max(piece_limit, 1u)), uint64_t(MOST_PIECES))) + 1u;
     for (uint i = item_index(); i < count; i += item_stride()) {
         uint walker = list.at[i];
-        if (is_barred(barred, walker)) {
+        if (in_one_piece(known, walker)) {
+            runs.at[walker] = NONE;
             continue;
         }
         uvec2 both = ends.at[walker];

@@ -5,8 +5,8 @@
 #include "cells.glsl"
 
 const uint MOST_PIECES = 4096u;
-// As in insert.glsl.
-const uint NOT_NOW = 4u;
+// As AT_HUB and BARRED in insert.glsl: walks from hubs go in one piece.
+const uint IN_ONE_PIECE = 6u;
 
 uint wanted_pieces(Point a, Point b, int64_t low_x, int64_t low_y, int exponent, uint piece_length) {
     i64vec2 across = abs(place_of(b, exponent, low_x, low_y) - place_of(a, exponent, low_x, low_y));
@@ -15,8 +15,8 @@ uint wanted_pieces(Point a, Point b, int64_t low_x, int64_t low_y, int exponent,
     return uint(clamp(length / int64_t(piece_length), int64_t(1), int64_t(MOST_PIECES)));
 }
 
-bool is_barred(MaybeReadU32 barred, uint walker) {
-    return present(barred) && (barred.at[walker] & NOT_NOW) != 0u;
+bool in_one_piece(MaybeReadU32 known, uint walker) {
+    return present(known) && (known.at[walker] & IN_ONE_PIECE) != 0u;
 }
 
 #endif

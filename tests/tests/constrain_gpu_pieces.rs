@@ -81,7 +81,7 @@ impl On {
 
     fn walkers(&self) -> Walkers<'_> {
         let [list, listed, runs, spokes, degrees] = self.held.each_ref().map(Buffer::view);
-        Walkers { ends: self.ends.view(), list, listed, runs, spokes, degrees, begun: None }
+        Walkers { ends: self.ends.view(), list, listed, runs, spokes, degrees, known: None }
     }
 
     /// Runs all; gives the seeds, where pieces of walkers stand, and the pieces.

@@ -9,7 +9,7 @@ mod vulkan_support;
 use constrain_gpu_support::*;
 use polder_constrain::Fault;
 use polder_constrain::kernels::*;
-use polder_constrain::reference::{HUB, MOST_SPOKES, kernels};
+use polder_constrain::reference::{HUB, HUB_WALK, MOST_SPOKES, kernels};
 use vulkan_support::Gpu;
 
 #[test]
@@ -154,7 +154,7 @@ fn admit_walks() {
 #[test]
 fn mark_chains() {
     let mut gpu = Gpu::open();
-    let (mut lost, mut met, mut stolen) = (0, [0; 2], 0);
+    let (mut lost, mut met, mut stolen, mut partial) = (0, [0; 2], 0, 0);
     for mut case in cases() {
         let first = case.is_first();
         let (walkers, counts, _) = case.list();
@@ -188,6 +188,7 @@ fn mark_chains() {
                 words: on.words.view(),
                 stride: on.stride as u32,
                 piece_limit: 1,
+                hub_walk: HUB_WALK,
             };
             run::<MarkChains>(&mut gpu, EXACT, 2, &arguments);
             let expected = case.mark(&walkers);
@@ -196,6 +197,8 @@ fn mark_chains() {
             assert_eq!(u64::from(on.word(&mut gpu, WALKED)), expected.walked);
             assert_eq!(on.word(&mut gpu, LOSERS) as usize, expected.losers.len());
             assert_eq!(on.word(&mut gpu, STOLEN), u32::from(!first && expected.stolen));
+            assert_eq!(on.word(&mut gpu, PARTIAL_WALKS), expected.partial);
+            partial += expected.partial;
             assert_eq!(gpu.fetch(on.lost.view()), case.known(&expected.losers, &barred), "{}", case.name);
             let fault = match expected.fault {
                 None => NONE,
@@ -208,5 +211,5 @@ fn mark_chains() {
             stolen += usize::from(!first && expected.stolen);
         }
     }
-    assert!(lost > 50 && met.iter().all(|&n| n > 3) && stolen > 1, "{lost} {met:?} {stolen}");
+    assert!(lost > 50 && met.iter().all(|&n| n > 3) && stolen > 1 && partial > 0, "{lost} {met:?} {stolen} {partial}");
 }

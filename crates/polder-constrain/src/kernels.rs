@@ -17,7 +17,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "bfef18498faa5f2d68cc92b97076a240e9071901e29ed0f3dc2dd064a15f9fbc";
+    source "cce1c479c4793f1920e4111516d80bf63536fb4060e584512d5c16da5842309a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -40,7 +40,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "a5c4b8932c2eab9c9deabc58097dc6be11c1454a2f50cb443555cdefe4af7577";
+    source "b9af7a6baf3ecba340b02b45104da210b62cac0e9120435ab840873f80325bce";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -95,7 +95,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "ea6e8a292461d78f49a7ff571f1bccc8fbe28ba8040349a4d83f6f37ad3deea8";
+    source "fe11a5e9153059955fe5b34d87e5adfb9a8631a3d7f452d7e227af7ed09995fa";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -107,7 +107,7 @@ define_kernel! {
         8: read ends: View<'a, [u32; 2]>,
         16: read list: View<'a, u32>,
         24: read listed: View<'a, u32>,
-        32: maybe_read barred: Option<View<'a, u32>>,
+        32: maybe_read known: Option<View<'a, u32>>,
         40: both piece_count: View<'a, u32>,
     }
     values {
@@ -121,7 +121,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "d5c8d81362100a02ca3be9262c9af5ae666caac93a4c74db42499e5cb49a1a9d";
+    source "26a15e6bbb6ed12eccb69dca9422426bb5f1f410445df73b9ed68af28820c007";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -155,7 +155,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "84b34c6f5ebd73eb630280346d9c80db9606f25395040a8fb0072fe82464ed0c";
+    source "8884f02905dca19a941a6ef9f9cf3b43ac6bcea1e83352563542b6a8c5e41c78";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -174,24 +174,23 @@ define_kernel! {
         24: read ends: View<'a, [u32; 2]>,
         32: read spokes: View<'a, u32>,
         40: read degrees: View<'a, u32>,
-        48: maybe_read firsts: Option<View<'a, u32>>,
-        56: read seeds: View<'a, u32>,
-        64: both pieces: View<'a, [u32; 4]>,
-        72: read piece_count: View<'a, u32>,
+        48: read seeds: View<'a, u32>,
+        56: both pieces: View<'a, [u32; 4]>,
+        64: read piece_count: View<'a, u32>,
     }
     values {
-        80: low_x: i64,
-        88: low_y: i64,
-        96: exponent: i32,
-        100: width: u32,
-        104: height: u32,
-        108: piece_limit: u32,
+        72: low_x: i64,
+        80: low_y: i64,
+        88: exponent: i32,
+        92: width: u32,
+        96: height: u32,
+        100: piece_limit: u32,
     }
-    argument_bytes 112;
+    argument_bytes 104;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "1c5269e482753907e8dc5bdb08ae51a9128e3ec98a2f83f6487ec9d4a9ca1c19";
+    source "bd4b270c1516a75742da7d0394eddf65a049ed72bb6b6dba37ebdd2dab6545d1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -266,7 +265,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "594ea514e7f82b937d7b77e55d6f310bf90ebd6eb48e07535180305874a73403";
+    source "ec92e6a1918fff30243f0791a2a8c6766e9a0ac81d114e7feb3e730a1463de1f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -320,7 +319,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "519f7c8b20088df807313ac6272e35c69d0cdf45d3f89d6b3479679c9d34e134";
+    source "c65406478752e710b3c2bdd6091969892c4be474587acd4c92421eb52ea612df";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -347,12 +346,13 @@ define_kernel! {
     values {
         104: stride: u32,
         108: piece_limit: u32,
+        112: hub_walk: u32,
     }
-    argument_bytes 112;
+    argument_bytes 116;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "f4580a3eb5de3f1b707e1b3510dcc986465729e8412f5c7a9d4ade35670a2f56";
+    source "5ae7b0fd411f7474bdf458d45c5b5ed4d7a8331a781a6aea15ef07e04a23aff8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -426,7 +426,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "254dc82bac696868893aadc8df0bb49fc76f377ed862c3a433771b68fa8be132";
+    source "8a0e5b2c531519b1e6453bdef31025deef2db6ffc292f0e65702bc706d0dd3cc";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -489,7 +489,7 @@ define_kernel! {
         8: read ends: View<'a, [u32; 2]>,
         16: read list: View<'a, u32>,
         24: read listed: View<'a, u32>,
-        32: maybe_read barred: Option<View<'a, u32>>,
+        32: maybe_read known: Option<View<'a, u32>>,
         40: written runs: View<'a, u32>,
         48: both pieces: View<'a, [u32; 4]>,
         56: both piece_count: View<'a, u32>,
@@ -506,7 +506,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "7f96fefb482600bf857b4954924bc67db5554bd2576c6ad0766432ea78afd2c9";
+    source "1f2f703891dc78fe6ae9652a916f2abd26e5cb92074d7c21b994c9e210977477";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -541,7 +541,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "7eadcb17a0aebb3718d643a8d8579073ad58fb000a0f12c5fceb03c195c0bf52";
+    source "7481034ffe521ad3a8143e7899a5e60eea51688783cd45948a4c8dfd31029f16";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -42,6 +42,7 @@ pub const LOSES: u32 = 1;
 pub const AT_HUB: u32 = 2;
 pub const BARRED: u32 = 4;
 pub const LONG: u32 = 8;
+pub const PARTIAL_WALKS: usize = 41;
 pub const DONE: u32 = NONE - 15;
 pub const REVERSED: u32 = 1 << 31;
 pub const FLIPS: usize = 28;
@@ -120,7 +121,8 @@ impl Case {
     /// What stands in `lost`, with these losers and those that do not walk.
     pub fn known(&self, losers: &[u32], barred: &[u32]) -> Vec<u32> {
         let flag = |yes: bool, flag: u32| if yes { flag } else { 0 };
-        let word = |b: &Begun| flag(b.at_hub, AT_HUB) | flag(b.long, LONG) | b.low << 4;
+        let word =
+            |b: &Begun| flag(b.at_hub, AT_HUB) | flag(b.long, LONG) | if b.at_hub { b.walks << 4 } else { b.low << 4 };
         let mut known: Vec<u32> = self.begun.iter().map(|b| if b.done { DONE } else { word(b) }).collect();
         known.resize(known.len().max(1), 0);
         losers.iter().for_each(|&s| known[s as usize] |= LOSES);
@@ -181,7 +183,8 @@ impl Case {
 pub fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     let starts = families(400, 9).into_iter().enumerate().map(|(turn, (name, pslg))| (turn % 3, name, pslg));
-    let fans = [3, 4, 6, 9].map(|rounds| (rounds, "fan", polder_io::generate::fan(100 + 40 * rounds, 3)));
+    let fans = [(3, 220), (4, 260), (6, 340), (9, 460), (2, 4000)];
+    let fans = fans.map(|(rounds, k)| (rounds, "fan", polder_io::generate::fan(k, 3)));
     for (rounds, name, pslg) in starts.chain(fans) {
         let start = Start::stage_4(&pslg);
         let walk = reference::walk(&start.mesh, &start.positions, &start.constraints).unwrap();

@@ -239,17 +239,8 @@ pub struct Walkers<'a> {
     pub spokes: View<'a, u32>,
     /// By vertex how many do.
     pub degrees: View<'a, u32>,
-    /// For walkers that begin elsewhere, or do not walk although they are listed.
-    pub begun: Option<Begun<'a>>,
-}
-
-/// How insertion has its walkers begin.
-#[derive(Clone, Copy, Debug)]
-pub struct Begun<'a> {
-    /// By walker: the highest bit says that it begins at its second vertex.
-    pub firsts: View<'a, u32>,
-    /// By walker: the third bit says that it does not walk.
-    pub barred: View<'a, u32>,
+    /// By walker: whether it goes in one piece, in the second bit or the third; those that begin elsewhere do.
+    pub known: Option<View<'a, u32>>,
 }
 
 /// The kernels on one device.
@@ -319,14 +310,13 @@ impl Stage {
         let (pieces, piece_count) = (buffers.pieces.view(), buffers.count.view());
         let piece_limit = pieces.len() as u32;
         recording.fill(piece_count, 0);
-        let barred = walkers.begun.map(|begun| begun.barred);
         let groups = strides(walkers.list.len());
         let arguments = CountPiecesArgs {
             positions,
             ends,
             list: walkers.list,
             listed: walkers.listed,
-            barred,
+            known: walkers.known,
             piece_count,
             low_x,
             low_y,
@@ -340,7 +330,7 @@ impl Stage {
             ends,
             list: walkers.list,
             listed: walkers.listed,
-            barred,
+            known: walkers.known,
             runs: walkers.runs,
             pieces,
             piece_count,
@@ -359,7 +349,6 @@ impl Stage {
             ends,
             spokes: walkers.spokes,
             degrees: walkers.degrees,
-            firsts: walkers.begun.map(|begun| begun.firsts),
             seeds: buffers.seeds.view().cast(),
             pieces,
             piece_count,

@@ -37,8 +37,8 @@ pub use crossings::crossings;
 #[doc(hidden)]
 pub use inner::Trial;
 pub use insert::{
-    HUB, INNER_ROUNDS, Insertion, LEAST_REBUILT, LONG_CHAIN, LONGEST_REBUILT, MOST_SPOKES, MOST_SUB_CONSTRAINTS,
-    MOST_TIMES, USUAL_ROUNDS, insert,
+    HUB, HUB_WALK, INNER_ROUNDS, Insertion, LEAST_REBUILT, LONG_CHAIN, LONGEST_REBUILT, MOST_SPOKES,
+    MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS, insert,
 };
 pub use intersection::intersection;
 pub use keys::{claim_key, owner_of, owner_priority};

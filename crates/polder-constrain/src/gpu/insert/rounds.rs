@@ -1,9 +1,9 @@
 //! The dispatches of an outer round.
 
 use super::{Buffers, FEW, Input, Rounds, Stage, Word};
-use crate::gpu::pieces::{Begun, Walkers};
+use crate::gpu::pieces::Walkers;
 use crate::kernels::*;
-use crate::reference::{HUB, LONG_CHAIN, MOST_SPOKES, MOST_TIMES, USUAL_ROUNDS};
+use crate::reference::{HUB, HUB_WALK, LONG_CHAIN, MOST_SPOKES, MOST_TIMES, USUAL_ROUNDS};
 use polder_flip::gpu::Mesh;
 use polder_vulkan::{Error, Recording};
 
@@ -69,8 +69,15 @@ impl Stage {
         recording.dispatch(&self.admit, groups, &AdmitWalksArgs { walkers, firsts, lost, state, words });
         if let Some((grid, list)) = input.pieces {
             let listed = buffers.words.slice(Word::Walkers as usize..Word::Walkers as usize + 1)?;
-            let begun = Some(Begun { firsts, barred: lost });
-            let walkers = Walkers { ends: input.sub_constraints, list: walkers, listed, runs, spokes, degrees, begun };
+            let walkers = Walkers {
+                ends: input.sub_constraints,
+                list: walkers,
+                listed,
+                runs,
+                spokes,
+                degrees,
+                known: Some(lost),
+            };
             self.pieces.record(recording, mesh, &walkers, grid, list);
         }
         let arguments = MarkChainsArgs {
@@ -89,6 +96,7 @@ impl Stage {
             words,
             stride: buffers.slots as u32,
             piece_limit,
+            hub_walk: HUB_WALK,
         };
         recording.dispatch(&self.mark, groups, &arguments);
         let arguments = RebuildChainsArgs {

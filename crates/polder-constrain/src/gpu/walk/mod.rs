@@ -306,7 +306,7 @@ impl Stage {
             runs: buffers.runs()?,
             spokes,
             degrees: buffers.degrees.view(),
-            begun: None,
+            known: None,
         };
         self.pieces.record(recording, mesh, &walkers, grid, &buffers.pieces);
         Ok(())

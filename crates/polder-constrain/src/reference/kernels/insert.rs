@@ -3,7 +3,7 @@
 //! Lists are in the order in which their items come here; on a device they may be in any.
 
 use super::super::fan::{Departure, depart_by_turning, depart_from, enter, leave};
-use super::super::insert::{HUB, MOST_SPOKES};
+use super::super::insert::{HUB, MOST_SPOKES, hub_walk};
 use super::super::pairs::{Candidate, Owned, words_of_flip};
 use super::super::place::{self, FREE};
 use super::super::rebuild::rebuild;
@@ -66,6 +66,8 @@ pub struct Begun {
     pub reversed: bool,
     /// See there.
     pub at_hub: bool,
+    /// How often it has walked from a hub.
+    pub walks: u32,
     /// Whether its chain was too long once.
     pub long: bool,
     /// Once it walks, the triangle at its lower end.
@@ -182,6 +184,8 @@ pub struct Marked {
     pub losers: Vec<u32>,
     /// Triangles crossed, of all walks together.
     pub walked: u64,
+    /// Walks from hubs that were not whole.
+    pub partial: u32,
     /// Whether any of the triangles had another owner, maybe one of this round.
     pub stolen: bool,
     /// The lowest walker that could not go on.
@@ -200,13 +204,21 @@ pub fn mark_chains(
     let (mut marked, mut long) = (Marked::default(), Vec::new());
     for &s in walkers {
         let ends = sub_constraints[s as usize];
-        let Begun { first, reversed, .. } = begun[s as usize];
+        let Begun { first, reversed, at_hub, walks, .. } = begun[s as usize];
+        let most = if at_hub { hub_walk(walks) } else { u64::MAX };
+        begun[s as usize].walks += u32::from(at_hub);
         let line = if reversed { [ends[1], ends[0]] } else { ends }.map(|v| positions[v as usize]);
         let (mut h, mut near) = (first, 0);
         let mut fault = Some(Fault::Lost(s));
         let before = marked.walked;
-        for _ in 0..mesh.slots() {
+        for step in 1..=mesh.slots() as u64 {
             own(s, h, [near, -1, 1], begun, scratch, &mut marked);
+            if step == most {
+                marked.losers.push(s);
+                marked.partial += 1;
+                fault = None;
+                break;
+            }
             if mesh.is_constrained(h) {
                 fault = Some(Fault::Blocked(s));
                 break;
