@@ -26,6 +26,7 @@ mod insert;
 mod intersection;
 pub mod kernels;
 mod keys;
+mod limits;
 mod near;
 mod pairs;
 mod place;
@@ -36,12 +37,13 @@ pub use configuration::{Configuration, TriangleChain, triangle_chain};
 pub use crossings::crossings;
 #[doc(hidden)]
 pub use inner::Trial;
-pub use insert::{
-    HUB, HUB_WALK, INNER_ROUNDS, Insertion, LEAST_REBUILT, LONG_CHAIN, LONGEST_REBUILT, MOST_SPOKES,
-    MOST_SUB_CONSTRAINTS, MOST_TIMES, USUAL_ROUNDS, insert,
-};
+pub use insert::{Insertion, insert};
 pub use intersection::intersection;
 pub use keys::{claim_key, owner_of, owner_priority};
+pub use limits::{
+    HUB, HUB_WALK, INNER_ROUNDS, LEAST_REBUILT, LONG_CHAIN, LONGEST_REBUILT, MOST_SPOKES, MOST_SUB_CONSTRAINTS,
+    MOST_TIMES, USUAL_ROUNDS,
+};
 pub use near::near;
 pub use walk::walk;
 

@@ -3,7 +3,7 @@
 //! Lists are in the order in which their items come here; on a device they may be in any.
 
 use super::super::fan::{Departure, depart_by_turning, depart_from, enter, leave};
-use super::super::insert::{HUB, MOST_SPOKES, hub_walk};
+use super::super::limits::{HUB, MOST_SPOKES, hub_walk};
 use super::super::pairs::{Candidate, Owned, words_of_flip};
 use super::super::place::{self, FREE};
 use super::super::rebuild::rebuild;
