@@ -47,8 +47,9 @@ pub const USUAL_ROUNDS: u64 = 8;
 /// One thread rebuilds a chain, so that none may be long: six of a million constraints have more than 2,000.
 pub const LONGEST_REBUILT: u32 = 62;
 /// And only if so many sub-constraints are no edges before the first flip. On a GPU fewer keep few threads busy: then rounds of
-/// flips, each of them short, end sooner than the longest chain. On an NVIDIA H200 insertion took 2.7 ms by flips alone and
-/// 3.7 ms so with 100,000 constraints of all lengths among a million points, and 17.1 and 13.1 with ten times as many of both.
+/// flips, each of them short, end sooner than the longest chain. On an NVIDIA H200 insertion took 3.0 ms by flips alone and
+/// 3.7 ms so with 100,000 constraints of all lengths among a million points, 17.1 and 12.0 with ten times as many of both, and
+/// 4.2 and 2.2 with 500,000 short ones among ten million points.
 pub const LEAST_REBUILT: u32 = 250_000;
 
 /// A vertex where so many sub-constraints end is a *hub*, if they are no edges before the first flip,

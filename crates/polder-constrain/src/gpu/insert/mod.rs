@@ -363,7 +363,8 @@ impl Stage {
                 let left = buffers.words.slice(Word::Left as usize..Word::Left as usize + 1)?;
                 // Each outer round inserts or flips something, or looks at a tail of thousands of flips.
                 let mut recorded = Ok(());
-                let first = FIRST[usize::from(count >= rounds.least as usize)];
+                // There is room for more than there are.
+                let first = FIRST[usize::from(count / 2 >= rounds.least as usize)];
                 recording.repeat_ahead("insert constraints", left, u32::MAX, first, BATCH, |round| {
                     recorded = self.record_outer(round, mesh, buffers, input, rounds);
                 });
