@@ -14,8 +14,6 @@ const NONE: u32 = u32::MAX;
 const WORKGROUP: u32 = 256;
 /// Workgroups of kernels that stride over lists whose lengths the device knows.
 const WIDE: [u32; 3] = [256, 1, 1];
-/// Rows of so many stacks are merged in three turns.
-const MANY_STACKS: u32 = 128;
 /// Invocations of a workgroup of the rows' kernels, which take a row each.
 pub(super) const ROWS: u32 = 64;
 
@@ -152,12 +150,8 @@ impl Stage {
         let (ends, live, starts) = (buffers.ends.view(), buffers.live.view(), buffers.starts.view());
         let (rows, columns) = (self.tuning.rows, self.tuning.columns);
         let (bands, stacks) = (height.div_ceil(rows), width.div_ceil(columns));
-        // Merged in two turns of about as many bands each, or three.
-        let group = if stacks < MANY_STACKS {
-            stacks.isqrt().max(1)
-        } else {
-            (1..stacks).find(|g| g.pow(3) >= stacks).unwrap_or(1)
-        };
+        // Merged in two turns of about as many bands each.
+        let group = stacks.isqrt().max(1);
         let fills = width.div_ceil(2) as usize * bands as usize;
         let arguments = PlanBandsArgs {
             left_count,
@@ -180,12 +174,7 @@ impl Stage {
         if group < stacks {
             recording.dispatch_indirect(&self.row_merge, buffers.groups(Planned::MergeGroups)?, &arguments);
         }
-        let mut unit = if group < stacks { group } else { 1 };
-        if stacks >= MANY_STACKS {
-            let arguments = RowMergeArgs { unit, group: group * group, ..arguments };
-            recording.dispatch_indirect(&self.row_merge, buffers.groups(Planned::MergeGroups)?, &arguments);
-            unit = group * group;
-        }
+        let unit = if group < stacks { group } else { 1 };
         let arguments = RowMergeArgs { unit, group: stacks, ..arguments };
         recording.dispatch_indirect(&self.row_merge, buffers.groups(Planned::MergeRows)?, &arguments);
         let arguments = ColorPixelsArgs {
