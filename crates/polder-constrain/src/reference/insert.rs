@@ -26,7 +26,7 @@
 //!   again; only the others do. Who has waited at a hub may come later and take a triangle from its owner, who then walks
 //!   again. Pairs that the owner was about to flip there are not flipped, though their claims hold for one round.
 //! - Hubs. Of 40,000 from one vertex all cross the triangles around it, of which only a few get their whole chain in any
-//!   round. All of them walked 73,997,493 triangles in 31 outer rounds; this way 3,780,998, in 43, with about as many inner
+//!   round. All of them walked 73,997,493 triangles in 31 outer rounds; this way 4,452,518, in 45, with about as many inner
 //!   rounds. A later walk begins where the last one left the hub: flips there only divide triangles, nearly always.
 //!   Walks from hubs are not whole at first (see [`HUB_WALK`](super::HUB_WALK)).
 //! - The least hash of the id wins, not the least id.

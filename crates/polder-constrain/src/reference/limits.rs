@@ -19,9 +19,9 @@ use super::keys::OWNER_BITS;
 /// nearly the fewest rounds in all. On one thread 2 to 8 take the same time.
 ///
 /// Where chains are long, they are so many times more: by one for each [`LONG_CHAIN`] triangles that the walks of the outer
-/// round crossed on average, or by one for each [`USUAL_ROUNDS`] outer rounds before, up to [`MOST_TIMES`]. Of 20,000 constraints from one vertex (6,777,048 intersections), all of
-/// which run through the same few triangles there, 8 rounds at most took 86 outer rounds, 669 inner ones and 48,094,358
-/// triangles; 50 rounds 22, 756 and 21,709,208; no limit 21, 1,560 and 19,732,962; and this rule 27, 619 and 25,813,993.
+/// round crossed on average, or by one for each [`USUAL_ROUNDS`] outer rounds before, up to [`MOST_TIMES`]. Of 40,000
+/// constraints from one vertex 8 rounds at most took 103 outer rounds, 813 inner ones and 10,137,780 triangles; no limit 28,
+/// 2,888 and 2,773,847; and this rule 45, 966 and 4,452,518.
 pub const INNER_ROUNDS: u32 = 8;
 /// See [`INNER_ROUNDS`].
 pub const LONG_CHAIN: u64 = 64;
