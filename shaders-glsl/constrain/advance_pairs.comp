@@ -40,6 +40,7 @@ void main() {
             if (look.a != NONE && found.a == NONE) {
                 found = candidate(Rows(triangles), links, positions, state, round, look.a);
             }
+            renew(links, look);
         }
         uint place = place_in(words, CANDIDATES + (parity ^ 1u), found.a != NONE);
         if (found.a != NONE) {

@@ -40,10 +40,10 @@ Candidate candidate(
     int far_side = side_of(next_word);
     bool turns = side * far_side < 0;
     // The pair itself, the one before it, and the one that would then be before it.
-    uint near_corner = apex(triangles, h);
-    Point near = point_at(positions, near_corner);
-    Point right = point_at(positions, origin(triangles, h));
-    Point left = point_at(positions, destination(triangles, h));
+    uvec4 row = FOUR_WORDS(triangles)[2u * a].row;
+    Point near = point_at(positions, pick(row, out_of));
+    Point right = point_at(positions, pick(row, turned(out_of, 1u)));
+    Point left = point_at(positions, pick(row, turned(out_of, 2u)));
     Point far = point_at(positions, apex(triangles, g));
     Point beyond = far;
     int before_side = 0;

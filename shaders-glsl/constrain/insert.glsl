@@ -14,10 +14,12 @@ BUFFER(SharedU32x2, uvec2, 8, coherent);
 #ifdef COHERENT
 #define WORDS SharedU32
 #define MESH SharedRows
+#define FOUR_WORDS SharedFourWords
 #define PAIRS SharedU32x2
 #else
 #define WORDS U32
 #define MESH Rows
+#define FOUR_WORDS FourWords
 #define PAIRS U32x2
 #endif
 #include "tallies.glsl"
@@ -154,11 +156,6 @@ uint inward(uint word) {
 
 uint outward(uint word) {
     return word >> 2 & 3u;
-}
-
-uint turned(uint k, uint by) {
-    k += by;
-    return k >= 3u ? k - 3u : k;
 }
 
 // The side of the corners opposite the edges where the owner comes in and goes out.

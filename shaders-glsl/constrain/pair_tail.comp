@@ -139,6 +139,7 @@ void main() {
             if (look.a != NONE && found.a == NONE) {
                 found = candidate(triangles, links, positions, state, round, look.a);
             }
+            renew(links, look);
             if (found.a != NONE) {
                 claim(state, parity ^ 1u, found);
                 pairs_of(parity ^ 1u).at[atomicAdd(next_count, 1u)] = found.entry;

@@ -70,27 +70,27 @@ bool flip_pair(
     uint u = g / 3u;
     uint k = h - 3u * t;
     uint j = g - 3u * u;
-    uint h1 = next_edge(h);
-    uint h2 = prev_edge(h);
-    uint g1 = next_edge(g);
-    uint g2 = prev_edge(g);
-    uint near = apex(triangles, h);
-    uint right = apex(triangles, h1);
-    uint left = apex(triangles, h2);
-    uint far = apex(triangles, g);
-    uint t_outer = link_of(links, h1);
-    uint u_outer = link_of(links, g1);
+    uint k1 = turned(k, 1u);
+    uint j1 = turned(j, 1u);
+    uvec4 corners_t = FOUR_WORDS(triangles)[2u * t].row;
+    uvec4 corners_u = FOUR_WORDS(triangles)[2u * u].row;
+    uvec4 links_t = FOUR_WORDS(links)[2u * t].row;
+    uvec4 links_u = FOUR_WORDS(links)[2u * u].row;
+    uint near = pick(corners_t, k);
+    uint right = pick(corners_t, k1);
+    uint left = pick(corners_t, turned(k, 2u));
+    uint far = pick(corners_u, j);
+    uint t_outer = pick(links_t, k1);
+    uint u_outer = pick(links_u, j1);
     uint word = state.at[OWNED(t)];
     int near_side = side_of(word);
     int far_side = side_of(state.at[OWNED(u)]);
     bool zero = near_side == 0 && far_side == 0;
-    set_apex(triangles, h2, far);
-    set_apex(triangles, g2, near);
-    set_link(links, h, u_outer);
-    set_link(links, g, t_outer);
     uint mark = zero ? CONSTRAINED : 0u;
-    set_link(links, h1, g1 | mark);
-    set_link(links, g1, h1 | mark);
+    FOUR_WORDS(triangles)[2u * t].row = replaced(corners_t, turned(k, 2u), far);
+    FOUR_WORDS(triangles)[2u * u].row = replaced(corners_u, turned(j, 2u), near);
+    FOUR_WORDS(links)[2u * t].row = replaced(replaced(links_t, k, u_outer), k1, 3u * u + j1 | mark);
+    FOUR_WORDS(links)[2u * u].row = replaced(replaced(links_u, j, t_outer), j1, 3u * t + k1 | mark);
     state.at[STAMP(t)] = ~(round << 2 | k);
     state.at[STAMP(u)] = ~(round << 2 | j);
     // Corners from k on: near, right, far in t; from j on far, left, near in u.
@@ -131,8 +131,8 @@ uint resolved(MESH links, WORDS state, uint round, uint side) {
     return outer;
 }
 
-// Renews the link of an outer side of a flip.
-void renew(MESH links, WORDS state, uint round, uint side) {
+// The link of an outer side of a flip that is to be renewed, and what it becomes.
+uvec2 renewed(MESH links, WORDS state, uint round, uint side) {
     uint outer = link_of(links, side);
     uint mark = outer & CONSTRAINED;
     outer &= HALF_EDGE;
@@ -141,10 +141,9 @@ void renew(MESH links, WORDS state, uint round, uint side) {
         if (outer == next_edge(outer - outer % 3u + (stamp & 3u))) {
             outer = prev_edge(twin(links, outer));
         }
-        set_link(links, side, outer | mark);
-    } else {
-        set_link(links, outer, side | mark);
+        return uvec2(side, outer | mark);
     }
+    return uvec2(outer, side | mark);
 }
 
 // Whether this invocation is the first to list a triangle that was not flipped.
@@ -155,16 +154,25 @@ bool lists(WORDS state, uint round, uint t) {
     return ~atomicMin(state.at[STAMP(t)], ~(round << 2 | LISTED)) >> 2 != round;
 }
 
-// What one of four lanes of an item looks at: a triangle, or NONE; and the pair, where it is known to be one still.
+// What one of four lanes of an item looks at: a triangle, or NONE; the pair, where it is known to be one still; and a link to be
+// renewed, with what it becomes, or NONE.
 struct Look {
     uint a;
     Candidate known;
+    uvec2 link;
 };
 
-// Renews a link around a flip, gives claimed triangles back, and finds what to look at again: the two triangles of a flip,
+// Writes a link that is to be renewed: after all is read, since what has been written near is no longer at hand.
+void renew(MESH links, Look look) {
+    if (look.link.x != NONE) {
+        set_link(links, look.link.x, look.link.y);
+    }
+}
+
+// Finds what link to renew around a flip, gives claimed triangles back, and finds what to look at again: the two triangles of a flip,
 // the one before and the one after them; and the first triangle of a pair that was not flipped.
 Look settle(MESH links, WORDS state, uint parity, uint round, uvec2 entry, uint lane) {
-    Look look = Look(NONE, NO_PAIR);
+    Look look = Look(NONE, NO_PAIR, uvec2(NONE));
     uint h = entry.x & HALF_EDGE;
     uint b = entry.y & NO_B;
     uint t = h / 3u;
@@ -201,7 +209,7 @@ Look settle(MESH links, WORDS state, uint parity, uint round, uvec2 entry, uint 
     uint of_t = state.at[OWNED(t)];
     uint of_u = state.at[OWNED(u)];
     uint edge = (lane & 1u) == 0u ? h : g;
-    renew(links, state, round, lane < 2u ? edge : prev_edge(edge));
+    look.link = renewed(links, state, round, lane < 2u ? edge : prev_edge(edge));
     if (lane < 2u) {
         state.at[CLAIM(lane == 0u ? t : u, parity)] = NONE;
         look.a = lane == 0u ? (of_t == FREE ? NONE : t) : (of_u == FREE ? NONE : u);

@@ -64,19 +64,6 @@ void claim(WORDS claims, uint lower, uint upper) {
     atomicMin(CLAIM(upper / 3u), mine);
 }
 
-uint pick(uvec4 row, uint k) {
-    return k == 0u ? row.x : k == 1u ? row.y : row.z;
-}
-
-uvec4 replaced(uvec4 row, uint k, uint with) {
-    return uvec4(k == 0u ? with : row.x, k == 1u ? with : row.y, k == 2u ? with : row.z, row.w);
-}
-
-uint turned(uint k, uint by) {
-    k += by;
-    return k >= 3u ? k - 3u : k;
-}
-
 // Step 3, first half: flips an edge if it has both its triangles; then nobody else touches their links. Outer links keep the
 // names that they had before the round. Whether it was flipped.
 bool flip_pair(MESH triangles, MESH links, WORDS claims, uint round, uvec2 edge) {

@@ -29,6 +29,20 @@ uint prev_edge(uint h) {
     return h % 3u == 0u ? h + 2u : h - 1u;
 }
 
+// Places of a triangle, and what stands there in four words at once.
+uint turned(uint k, uint by) {
+    k += by;
+    return k >= 3u ? k - 3u : k;
+}
+
+uint pick(uvec4 row, uint k) {
+    return k == 0u ? row.x : k == 1u ? row.y : row.z;
+}
+
+uvec4 replaced(uvec4 row, uint k, uint with) {
+    return uvec4(k == 0u ? with : row.x, k == 1u ? with : row.y, k == 2u ? with : row.z, row.w);
+}
+
 // The order in which conflicts are settled: the least of all that claim a triangle gets it. A bijection.
 uint priority(uint id) {
     uint x = id;

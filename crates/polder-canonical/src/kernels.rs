@@ -25,7 +25,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e6e84f0c0021308fd7b6b78c7adbc69f00b5af81722a43de0190eaf5d5641efe";
+    source "bf205c406dfab87903db35bcf02d8e52fa449658ef4b45388b0c2796471f75e5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -45,7 +45,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "a48f36e320d162e729fff4502fabd13ca3ebf6f37f2216688dd6321139d2e660";
+    source "b895abb03c8b63a9254249ad3f373628e1268398e55fd50612278cc1a3b99492";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -69,7 +69,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "523ba5c2705346f2357242665fc4b198234e31c8d0f1b8df7d55a56dfce587a6";
+    source "a4706cef940c46593ea9d720c290d25ccaa8d1c880de51980aba8548c9ffe512";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -88,7 +88,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "5814abf3cb429e15660ece77f5be50f90ddc9b5cde3fea052454ffd96e8f3ece";
+    source "a40e4c4e87f2a5aa4cc64676b86c913f8ad8a64e7fdb548901423d3a1fd3d807";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -111,7 +111,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "0ad91a9b6a9370d26db420c9cb077bdc1cbd461c2c2f4223803b7f175348d90f";
+    source "34be8716890f5438e58dc772aada40c7a8a751a2d30359d3505c7c0357daabbd";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -129,7 +129,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "bd40c8b86c1e92003af9c4ffccf920dcf674c6e9dec6932b98493d558044604e";
+    source "805779a670e015a6ace952ec11c3268c9eeeea5b31d037c77ad724a129aa923a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -149,7 +149,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4489f066204f1c628d61ef1cadb59147209dffff1a7bb968dd0169904eebfab5";
+    source "afa1ff1dbd1a52a7dbb14d5cba87961b38dab8707d12848c4513fa627cffde3b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -171,7 +171,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "f09614a6f99fdaeee9bd5278468aae04224a9936f20a1689337b2bfaa0cacd76";
+    source "65e62107166ad5c6478fd64491c97b41f3c1797e7e07e68ee9f6ec92520cadcc";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -192,7 +192,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "0a5b45ad3425d834dde2710d034d0d2e1638041134af57fc78df1401a379cc91";
+    source "2d49da79bcbe62fec309e9b21f2a7f5aa0a1848f17d24a6b35758b3323317385";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -212,7 +212,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "65c1915919b6544deb08da01e99e718adbe8fce3a2b427bc472cb0fffc0c3801";
+    source "476d503469b22a93894c678601790b64a4c09ca6d022b9a4f9094cfb4b46a762";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -235,7 +235,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "689425d4d4720483f518559ef3343feaa06d9e481e36887c063be4ee0b7fe631";
+    source "dd4e74e8483e720bed28c6773ef0c9df806d436e03bea22b020b9481eb269abb";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -258,7 +258,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "a1e493d31fb4edbc62fd379ea1de0ea948120d70c3546dfb9e76b3f90e3d6c16";
+    source "7f61ac67c15ac4116e398e9c08cb19c2c86b9021dba89dc74781ef8620d867e4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -279,7 +279,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "f844474ed59300149704729a57e3d8d5ef59930d928b3ff3e0a012e2a65398c7";
+    source "83e524003829a696bc7ec50c4cd0b4cab8cee7832eaa77cf2559b9d528c948f3";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -305,7 +305,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "2aed65c8cf0285268b939e1f01625e81a7d746d05e972906572689c749c7656a";
+    source "dd14caf58176f3471db0bc913b601a157939643b7c39e536b2b8fd4ed58de876";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -353,7 +353,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "a80465e0f7dbc5c1b64eda8373a207e0fb9815c302d57ef59f0b3ff7f57917df";
+    source "04dbf84fabc360c5f1f46cfc04d0850cf116247042a9b5db57388fb7ca6bdae7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -372,7 +372,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "ee844c227b81389331c6f2bbf77495db5b12fa69e7df5508d1119620cdfe9cf5";
+    source "a40d49484aee95b0a8139120ab2d65c376d9ea3f5f8e5df117907b6d19db4a46";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -401,6 +401,6 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "6a0be9bcbfd33c3ee17b4eff6676d800847aa07b41d3c6d77f6ec699878b5ff8";
+    source "619b33c9af0cf00e634466003cbdfac5b58d5e58128010b58604b8415d530dc0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

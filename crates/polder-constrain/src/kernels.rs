@@ -17,7 +17,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "cce1c479c4793f1920e4111516d80bf63536fb4060e584512d5c16da5842309a";
+    source "4b5a937a1b123a51496a5663d6b965615bb41314d300c9ea6ba77731f8b56b8f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -40,7 +40,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "b9af7a6baf3ecba340b02b45104da210b62cac0e9120435ab840873f80325bce";
+    source "38827c202742a04d6df514d169720bd42ccd0cb63eaf11e941ded6922a9c83a8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -68,7 +68,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "d9426dd299f3fa948359d3dd6539fc8065afc22f42ea7e8cfa7ad8da7f216a37";
+    source "f96c01b2e27dc61a3c0fe23e5de321ce4e691deba3fdf9b8b57ca816438344bd";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -95,7 +95,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "fe11a5e9153059955fe5b34d87e5adfb9a8631a3d7f452d7e227af7ed09995fa";
+    source "fa65e3dfbc3cb524b5e52375d6cc774d21b73af5493f713c6084fca79caeeb3e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -121,7 +121,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "26a15e6bbb6ed12eccb69dca9422426bb5f1f410445df73b9ed68af28820c007";
+    source "1c82dba5f5cb1f68199aa7e3c1b50318caae1c0e200350cf257384fc34430dd9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -155,7 +155,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8884f02905dca19a941a6ef9f9cf3b43ac6bcea1e83352563542b6a8c5e41c78";
+    source "4e236370ca002bbbc92f27a101018d457fda92d287019f6f115d4aaa50ac19d0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -190,7 +190,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "bd4b270c1516a75742da7d0394eddf65a049ed72bb6b6dba37ebdd2dab6545d1";
+    source "923e8991e2751aa99eab9552296451e8e833671950257c60f2cc950786d19292";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -216,7 +216,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "52571e4e91f5a31b24bfa9c6b1a81d4229632c47f0e9f31f55349159fa6df21d";
+    source "843687f98dd2e892e04c9496b685596886c8376d1aa12e4ad725be51a019bd3b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -240,7 +240,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4cc8cc211854fb3c81a529fd753914c01ca88d06b3c70d747b30e5bccbe63aa4";
+    source "1f2cb7eefd015507e25377db9163f03377db19144ac5c56724ddd491fded46ef";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -265,7 +265,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ec92e6a1918fff30243f0791a2a8c6766e9a0ac81d114e7feb3e730a1463de1f";
+    source "73514a840a7d21673ee6c91a640f38fc778fc36638ed2ffdc4b2c5df46a241b5";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -290,7 +290,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "b64b2d534efc73028195cdb7eb80b7b521b2f8a5a108ec14c648deeba09507e0";
+    source "114450e85cc4b8f9d829aba49e24f781a7a48dcc4fc08d7b2a88feb248f8fc69";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -319,7 +319,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c65406478752e710b3c2bdd6091969892c4be474587acd4c92421eb52ea612df";
+    source "ca97be29aaa7e4e260f46eea3217b40bf0c986c63a12d5e4c9842ba608ecf079";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -352,7 +352,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "5ae7b0fd411f7474bdf458d45c5b5ed4d7a8331a781a6aea15ef07e04a23aff8";
+    source "89257acb9c8578a11c2b9f090553eddcd1ef3bd98381d6db51e8bd4b0b2d9198";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -426,7 +426,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8a0e5b2c531519b1e6453bdef31025deef2db6ffc292f0e65702bc706d0dd3cc";
+    source "88776d715cfe018da02ab787183aab9498524785ca76b79b31e072d096b26bc7";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -452,7 +452,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "44ed37d990ec7e2311e82e32b0e8e5527c342eb78c5c49bade8d3508c7808d52";
+    source "6480c70aab09a3301fc2e446742b5271b8feb6c2fe032976587203db0957ddb6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -476,7 +476,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "e1dcfbb5508839d596de2733ed3b697e7c9537e2dd92f3183f944e51336da772";
+    source "eb188f0c11e8c9a9d56cedf9c1168d84786a3ff0bbda5e86e810e71779f6c524";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -506,7 +506,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "1f2f703891dc78fe6ae9652a916f2abd26e5cb92074d7c21b994c9e210977477";
+    source "4519c1e8a56686b9af538d1947a806e3cc3ca3e70c0446f3dbdb5e797c3fa522";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -541,7 +541,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "7481034ffe521ad3a8143e7899a5e60eea51688783cd45948a4c8dfd31029f16";
+    source "dc323f6d7bdda2f19600592f7d72fcea8814e08cc3ca71fea9deac780e6afea2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -566,7 +566,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4a8adf9c4850d620d90080e4af2b03d0cd6b5cb94c372cd16bc98792e1b726c3";
+    source "f460b1b3ced7dccbd9e57e4a14bef2feae1ef017f81d4adf0584704d7a4df639";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -592,7 +592,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "9006e575bc6c01696e374c4c7c457c1499e5174fe152149bc234879852f827b1";
+    source "0376edcb43901fe4b543692f05ee24d85851d379ad11ea3af8fc4022ce6a01f2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -612,7 +612,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "50b9b7d3e836bda5ec94019ecacbc1599d7a8bda692dde00270ece41bc5ad61c";
+    source "497a9a354e55115ac69fb09971f20718ce21bae992b5556b83ae0d233b46094b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -645,7 +645,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "55517f5b91398d7a8f960c892c49d8714b859b008fa4fa4758f14118eed573c9";
+    source "ea79c74e5c6f53ca69828d68a461da3ad2687b420b693778b822fe6b7ebcb3d6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -664,6 +664,6 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "d8cde1dd1d09bdba5fc6c7028b4987377d0e80303a67c17dc3f4a5e1f5089d66";
+    source "9a0791e94f06d4840ab0cbbf033628c56ee2544dea4634469a121780150b029d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

@@ -47,7 +47,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot",
         "GroupNonUniformShuffleRelative", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4f03f119854a999ff361fd295a42a88326c91b4c36c8e8d90f26339fda4d67d9";
+    source "d87e36a757d7ab182407df68bde5d22511534f5d000ad72fde4bed27bb474075";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -78,7 +78,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "697723088944400ade86cee709a0d24333bb091c961ddd3c944fce9cef6534e9";
+    source "7676add86f16e5756af67783a41b4b46242b4e962f2d18ce7035eabf22b71b9b";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -110,7 +110,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "NEAR"(1) = 12];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "964eccc3d0222807fc3b02dcfca8d9d955252d8f0dd27490426d8e03ef686294";
+    source "6ae2524f08c85d541b81a266e57e72b8aeeb9096856c54ff451972002d99e4cf";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -129,7 +129,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4c3c2318403c453df55c8753e25a1c49aab76eb4d3f9a6d3a9602d6934f30259";
+    source "4338fca7e2e0fafe46cd5bf649fa1a376c49fa9645e7f6226c388db340b6d4d1";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -153,7 +153,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4fcbc49cbd0f5abf0f4007f1fc3ff718bffd4fe04bb4324bcfe0a4da6c0b3152";
+    source "d7b885737b47d775f98e42d6fd38b05dead473a84d4a1a8340fa76cc656c0ff4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -176,7 +176,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "17f033c0c6afa4a58023f11be57b0a792391a724a331bd0996086a50dd732d95";
+    source "fd09de8ee13190069da72c6899ade28876ee0f5efa6e9544ed8b7709023ff66a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -198,7 +198,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4b443fc71a458e23468e009fd529ac37aa1e561ce389f2cf58671f5f7a9a6f29";
+    source "f9597b0849a308c6327a583fa85ba0e1a8bf3039fc0385fdfcbf94f4f2a414da";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -223,7 +223,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "be26932e9c2fcf6127b927a07753d65110e5163d4d0bc2486dcefe1829cf03f9";
+    source "bb6ae6bff8e5f945675a839015896ffbf77bc622474253b0a8aa836b703188e9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -249,7 +249,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "defaaac15482257bdae0e3869b590ef95b9c98b08ef5e137cd90190d44890c5d";
+    source "8e2e455274c35fee5375ebe2e6d0f8a720f98eeb0bcbc770fb1fc1e461e47bba";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -271,7 +271,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e1ad6f398697bdc2eab9a7249bf93d4d88a5bf89d281f5a1923248dfb9e16a5a";
+    source "d6b9a3d33815c01d295509d83eff628e59d37f47eeadaded3fc5f9e35d91c0b3";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -307,7 +307,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "504dac40c7f7a640a529ad9360cf8450daf3dd5e234e91db34c79c3cec7866e5";
+    source "23ad53825dc5af6bb39902183bb77434a44cf629033a1dc895a194c92b8b04b2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -335,7 +335,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "3b1b3d42a02533f4f8140ec035b5b3c4912a5d25a93a88970523de7752cdab64";
+    source "a6f0a88d0d93a22adb100501268554a7e60d44b5d2361119da6c40d91b257029";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -353,7 +353,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "baf81fb789ad989c5fab7734636a63480046de8867797b25bd58b54531bd2c34";
+    source "97d64d9ef3ed9076773e004bf3fcea11e21bb2bf80b81307e680dc151b765dea";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -372,7 +372,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "560853103cb211bc872045faadaebb9c6fcff7518fee478ab91460dc8d4f6853";
+    source "491378fcadf9c140f5cc85102cc085cc28f5ce5804a2b0e8e4cf2ae3631b4628";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -397,7 +397,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "a0a555b77e4c2a8eea19d886d10d80c77e12f1edcc71eb2e290a0a383fed6cad";
+    source "eb4e3dfa61824e5b75bbfccd5e2eefd248668e129c85ef3e2e67a6119a7608ab";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -429,7 +429,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "dff9499524d55333bae7d0cb28c544466fd0fe6571f0b76ae080e19303a90021";
+    source "f159321652af2df224105db94c9009553a2edbc7e9c0cdcc271acc3ddfcc2c68";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -456,7 +456,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "10b417f3e3d7eb5e66abc15a2615426f8215d9f5d26d891de9b74c6cd9cdd9f4";
+    source "d2d87ba0a2e71afcbbe2fe500039d17236319458a6e3a7af5df9d504b6c03a0f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -502,7 +502,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "15cd1293add487d0484de5cfcf3c7873d2c3e9721880c827d03badf737a602c6";
+    source "ed6bf58edff809728274c1c34d746fdef01cd9e3fca91ebe97d36d7bc1602fb0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -524,7 +524,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "c4af3d6c6a66014e981d708b41a2b84f68e229d52e3e454c01e7f94c0d779ee4";
+    source "793598d7631335eeb36d97ed830a653765918b3df8c76b8c799fa25dc2f657c4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -558,7 +558,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1, "FEW"(2) = 1024];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "GroupNonUniformBallot", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "e35ff719a319d05ba4796bdd4172c154803b310661256cca57c20813a5b1d92e";
+    source "3535d19699b56a9dfc2042ae8eda084494207632f2f1b5e0d28b37bb32ff6831";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -585,7 +585,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "d43944643a7c5dae1b5e835f639c7f957130ed634f80cb07b2feae315165a914";
+    source "85732708170b1be17c92852d9ebef19a2d4fa480773219849d77333b668ece9e";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -611,7 +611,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "PhysicalStorageBufferAddresses", "Shader"];
-    source "d069c054d9f2dafecdd466ad86710acc35e3f969bb0fc39b4d9162582966b6d9";
+    source "82a99a8a520547c3c173e2bf729f39b36e6f9284383966ed2c692b4d562f6d0a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -634,7 +634,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "350c5c0ba23f3b086b044202efb42b257a9b4eaeff2577c91597ade0f6d52817";
+    source "e71551f40aaac197bf23b8e75798b0813ce380b24615987ca56afed166de2237";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -655,7 +655,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 128];
     capabilities ["GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8fa2862e789bb52aa71df2205c1a91446948ac714737a4e4e6228718d1cca8a4";
+    source "303997d6a1cd3886abfb062f22e7f39cc6dff31e33a08b29d8909c97cb7a5d45";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -685,6 +685,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 128, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformBallot", "Int64", "PhysicalStorageBufferAddresses",
         "Shader"];
-    source "eaa827685b203a07b6712a19f1538c40658029f29ed702a28fef75aded7a50e2";
+    source "e3371ecc06cc0874780e42f4f010b5215431bdec7f5c8c4310b5dc3e8402a5ca";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }

@@ -26,7 +26,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "1b669a0091109cf8e7ca40d7ba99c10e0aa6882bcbe4dfad117a954ce4bd6434";
+    source "d9dc7d777d6ee958a5bce2bcb3fb1ba898254e24cc0b725a377867a829d104a4";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -54,7 +54,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "6f2e55be1272f4cc5541d94d670dac857c8922486a088a3f854cb247ec15e401";
+    source "030ffe0947905572a7a4c95734e5f956edaa1f4e2c47d916ccfdb6ee6e4a3134";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -83,7 +83,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "16316b4d670183acafc345d606b2a694e8e85b22db967572859e71a4d3882453";
+    source "5307546fbb1330da7555a77be69af5a76b4319a134de453cc7679299eec0ac79";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -143,7 +143,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "6e5ba1dc2697907578a06c7ef0a264274d7ef918c6980a8b2222281f91ade3bb";
+    source "ff93dc1e75b7b65bdf04f83540194e638b52fe08c955eb1230bd944470aa259c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -173,7 +173,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "9ba3de052a14860279e190a5d6aabf123cbd96c22020ed515a6f510c69fbfc91";
+    source "c5806380beeeb99859a87914e77ed4370c8b91d2859f7a3dc21674a6e1a55bc9";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -200,6 +200,6 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "e363ad913cce8e0641d9740c6f0b14ca14caee3782224c2c33f53dbf793d28cc";
+    source "9c6ef42652cfa547b96d5ca1a9deb259053bec2474d536cba2aed34c90de61a0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
