@@ -25,13 +25,20 @@ impl Run {
     }
 }
 
+/// `polder` where no Vulkan driver is found, whatever is installed; `tests/devices_gpu.rs` looks at what is said where one is.
+fn without_vulkan() -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_polder"));
+    command.envs(["VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_ADD_DRIVER_FILES"].map(|variable| (variable, "/nowhere")));
+    command
+}
+
 /// Runs `polder` in a folder; the arguments are separated by blanks.
 fn polder(folder: &Path, args: &str) -> Run {
     fed(folder, args, b"")
 }
 
 fn fed(folder: &Path, args: &str, input: &[u8]) -> Run {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_polder"));
+    let mut command = without_vulkan();
     command.args(args.split_whitespace()).current_dir(folder);
     let pipes = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
     let mut child = pipes.spawn().unwrap();
@@ -412,18 +419,9 @@ fn an_interrupt_cancels() {
     assert!(names(folder.path()).is_empty());
 }
 
-/// Where nothing is installed, one line says so. Where something is, `tests/devices_gpu.rs` looks at what is said.
 #[test]
 fn devices_without_vulkan_are_an_error_in_one_line() {
-    let folder = tempfile::tempdir().unwrap();
-    let run = |args: &[&str]| {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_polder"));
-        // No driver is found there, whatever is installed.
-        let nowhere = folder.path().join("nowhere");
-        let variables = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES", "VK_ADD_DRIVER_FILES"];
-        command.args(args).envs(variables.map(|variable| (variable, &nowhere)));
-        command.output().unwrap()
-    };
+    let run = |args: &[&str]| without_vulkan().args(args).output().unwrap();
     let plain = run(&["devices"]);
     assert_eq!((plain.status.code(), plain.stdout.len()), (Some(3), 0));
     let said = String::from_utf8(plain.stderr).unwrap();
