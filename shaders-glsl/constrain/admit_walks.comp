@@ -1,42 +1,40 @@
-// Who leaves a hub and did not get the triangle there has to wait: it would not get its whole chain.
+// Lists those that walk. Who leaves a hub and did not get the triangle there has to wait: it would not get its whole chain. These
+// are by far the most where there are hubs, and no invocation shall idle for them on the walks.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "claims.glsl"
+#include "appending.glsl"
 
 layout(push_constant, std430) uniform Args {
     ReadU32 walkers;
     ReadU32 firsts;
+    WriteU32 admitted;
     U32 lost;
     U32 state;
     U32 words;
 };
 
-shared uint admitted;
-
 void main() {
     uint count = words.at[DEPART_FAULT] == NONE ? words.at[WALKERS] : 0u;
-    if (gl_LocalInvocationIndex == 0u) {
-        admitted = 0u;
-    }
-    barrier();
-    uint sum = 0u;
-    for (uint i = item_index(); i < count; i += item_stride()) {
-        uint s = walkers.at[i];
-        uint h = firsts.at[s];
-        uint known = lost.at[s];
-        if ((known & BARRED) != 0u) {
-            continue;
+    for (uint begin = group_index() * WORKGROUP; begin < count; begin += item_stride()) {
+        uint i = begin + gl_LocalInvocationIndex;
+        uint s;
+        bool walks = false;
+        if (i < count) {
+            s = walkers.at[i];
+            uint h = firsts.at[s];
+            uint known = lost.at[s];
+            walks = (known & BARRED) == 0u;
+            if (walks && (known & AT_HUB) != 0u &&
+                !same_owner(scatter(s, OWNER_BITS) << 4, state.at[OWNED((h & HALF_EDGE) / 3u)])) {
+                walks = false;
+                atomicOr(lost.at[s], BARRED);
+                lose(lost, words, s);
+            }
         }
-        if ((known & AT_HUB) != 0u && !same_owner(scatter(s, OWNER_BITS) << 4, state.at[OWNED((h & HALF_EDGE) / 3u)])) {
-            atomicOr(lost.at[s], BARRED);
-            lose(lost, words, s);
-        } else {
-            sum++;
+        uint place = place_in(words, ADMITTED, walks);
+        if (walks) {
+            admitted.at[place] = s;
         }
-    }
-    atomicAdd(admitted, sum);
-    barrier();
-    if (gl_LocalInvocationIndex == 0u && admitted != 0u) {
-        atomicAdd(words.at[ADMITTED], admitted);
     }
 }

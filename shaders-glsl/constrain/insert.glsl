@@ -39,12 +39,12 @@ const uint GOES_ON = 3u;
 const uint INNER_LIMIT = 4u;
 // Whether a round changed nothing.
 const uint STUCK = 5u;
-// Walkers of this outer round.
-const uint WALKERS = 8u;
 // Whether any walker of this outer round goes by flips.
 const uint MARKED = 6u;
-// Those of them that do walk: who leaves a hub may have to wait.
-const uint ADMITTED = 7u;
+// Walkers of this outer round.
+const uint WALKERS = 7u;
+// Those of them that do walk, in a list of their own: who leaves a hub may have to wait.
+const uint ADMITTED = 8u;
 // Sub-constraints that walked, or had to wait, in this outer round and do not own their whole chain; and those of the round before.
 const uint LOSERS = 9u;
 const uint WAITED = 10u;

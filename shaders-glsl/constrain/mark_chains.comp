@@ -1,6 +1,5 @@
 // Steps 2 and 3 of an outer round: walkers claim each triangle that they cross; the least word says who owns it. Who finds a
-// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers. Who leaves a
-// hub and does not own the triangle there does not walk.
+// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "claims.glsl"
@@ -28,7 +27,7 @@ layout(push_constant, std430) uniform Args {
 shared uint walked;
 
 void main() {
-    uint count = words.at[DEPART_FAULT] == NONE ? words.at[WALKERS] : 0u;
+    uint count = words.at[ADMITTED];
     uint end = count == 0u ? 0u : count + min(piece_count.at[0], piece_limit);
     uint stamp = words.at[ROUND] << 2 | LISTED;
     uint longest = words.at[LONGEST];
@@ -62,14 +61,14 @@ void main() {
             begins = firsts.at[s];
             h = begins & HALF_EDGE;
             uint known = lost.at[s];
-            walks = (known & BARRED) == 0u;
-            if (walks && (known & AT_HUB) != 0u) {
+            walks = true;
+            if ((known & AT_HUB) != 0u) {
                 uint before = known / WALKED_ONCE;
                 uint64_t triangles = uint64_t(hub_walk) * uint64_t(4u + before) / 4ul << min(before / 16u, 20u);
                 farthest = uint(min(triangles, uint64_t(NONE)));
                 atomicAdd(lost.at[s], WALKED_ONCE);
             }
-            run = walks ? runs.at[s] : NONE;
+            run = runs.at[s];
             rest = run;
             if (run != NONE) {
                 rest_end = pieces_end(pieces.at[run], run);

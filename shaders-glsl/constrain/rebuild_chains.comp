@@ -220,7 +220,7 @@ bool rebuild(uint first) {
 
 void main() {
     bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
-    uint end = fails ? 0u : words.at[WALKERS];
+    uint end = fails ? 0u : words.at[ADMITTED];
     uint piece_end = end == 0u ? 0u : min(piece_count.at[0], piece_limit);
     if (gl_LocalInvocationIndex == 0u) {
         walked = 0u;
@@ -237,9 +237,6 @@ void main() {
     for (uint i = item_index(); i < end; i += item_stride()) {
         uint s = walkers.at[i];
         uint known = lost.at[s];
-        if ((known & BARRED) != 0u) {
-            continue;
-        }
         if (is_long(s)) {
             flips = true;
             if ((known & BY_FLIPS) == 0u) {

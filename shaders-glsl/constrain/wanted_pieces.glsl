@@ -5,8 +5,8 @@
 #include "cells.glsl"
 
 const uint MOST_PIECES = 4096u;
-// As AT_HUB and BARRED in insert.glsl: walks from hubs go in one piece.
-const uint IN_ONE_PIECE = 6u;
+// AT_HUB of insert.glsl: walks from hubs go in one piece.
+const uint IN_ONE_PIECE = 2u;
 
 uint wanted_pieces(Point a, Point b, int64_t low_x, int64_t low_y, int exponent, uint piece_length) {
     i64vec2 across = abs(place_of(b, exponent, low_x, low_y) - place_of(a, exponent, low_x, low_y));

@@ -20,8 +20,8 @@ fn rebuild_chains() {
             let mut case = Case { longest, ..case.clone() };
             let waiting = case.takes.clone();
             let (walkers, marked) = case.walk();
-            let on = On::new(&mut gpu, &case, &[(WALKERS, waiting.len() as u32)]);
-            gpu.engine.upload(on.walkers.slice(0..waiting.len()).unwrap(), &waiting).unwrap();
+            let on = On::new(&mut gpu, &case, &[(ADMITTED, walkers.len() as u32)]);
+            gpu.engine.upload(on.walkers.slice(0..walkers.len()).unwrap(), &walkers).unwrap();
             let barred: Vec<u32> = waiting.iter().copied().filter(|s| !walkers.contains(s)).collect();
             gpu.engine.upload(on.lost.view(), &case.known(&marked.losers, &barred)).unwrap();
             let arguments = RebuildChainsArgs {

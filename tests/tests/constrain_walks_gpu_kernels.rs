@@ -136,13 +136,15 @@ fn admit_walks() {
         let arguments = AdmitWalksArgs {
             walkers: on.walkers.view(),
             firsts: on.firsts.view(),
+            admitted: on.admitted.view(),
             lost: on.lost.view(),
             state: on.state.view().cast(),
             words: on.words.view(),
         };
         run::<AdmitWalks>(&mut gpu, &[], 2, &arguments);
         let [admitted, barred] = kernels::admit_walks(&walkers, &case.begun, &case.scratch);
-        assert_eq!(on.word(&mut gpu, ADMITTED) as usize, admitted.len());
+        let count = on.word(&mut gpu, ADMITTED) as usize;
+        assert!(sorted(&gpu.fetch(on.admitted.view())[..count]) == sorted(&admitted), "{}", case.name);
         assert_eq!(on.word(&mut gpu, LOSERS) as usize, barred.len());
         let known = case.known(&barred, &[&barred[..], &done].concat());
         assert_eq!(gpu.fetch(on.lost.view()), known, "{}", case.name);
@@ -167,10 +169,9 @@ fn mark_chains() {
                 case.start.mesh.set_constrained(case.begun[s as usize].first, true);
             }
             walkers.retain(|&s| !polder_flip::priority(s).is_multiple_of(4) || blocked);
-            let list = [&walkers[..], &barred].concat();
-            let words = [(OUTER, 3), (WALKERS, list.len() as u32), (HUBS, u32::from(!first))];
+            let words = [(OUTER, 3), (ADMITTED, walkers.len() as u32), (HUBS, u32::from(!first))];
             let on = On::new(&mut gpu, &case, &words);
-            gpu.engine.upload(on.walkers.slice(0..list.len()).unwrap(), &list).unwrap();
+            gpu.engine.upload(on.walkers.slice(0..walkers.len()).unwrap(), &walkers).unwrap();
             gpu.engine.upload(on.lost.view(), &case.known(&[], &barred)).unwrap();
             let arguments = MarkChainsArgs {
                 triangles: on.mesh.corners(),

@@ -3,21 +3,23 @@
 use polder_vulkan::{View, define_kernel};
 
 define_kernel! {
-    /// Who leaves a hub and did not get the triangle there has to wait: it would not get its whole chain.
+    /// Lists those that walk. Who leaves a hub and did not get the triangle there has to wait: it would not get its whole chain. These
+    /// are by far the most where there are hubs, and no invocation shall idle for them on the walks.
     AdmitWalks(AdmitWalksArgs) = "admit_walks";
     buffers {
         0: read walkers: View<'a, u32>,
         8: read firsts: View<'a, u32>,
-        16: both lost: View<'a, u32>,
-        24: both state: View<'a, u32>,
-        32: both words: View<'a, u32>,
+        16: written admitted: View<'a, u32>,
+        24: both lost: View<'a, u32>,
+        32: both state: View<'a, u32>,
+        40: both words: View<'a, u32>,
     }
     values {}
-    argument_bytes 40;
+    argument_bytes 48;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
-    capabilities ["PhysicalStorageBufferAddresses", "Shader"];
-    source "4b5a937a1b123a51496a5663d6b965615bb41314d300c9ea6ba77731f8b56b8f";
+    capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
+    source "e34f39f92f1e9c832d2694ec466096b93985c708b7bae1e83bf4e49fa8a6cf6f";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -40,7 +42,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "38827c202742a04d6df514d169720bd42ccd0cb63eaf11e941ded6922a9c83a8";
+    source "ec773f085b9a48a89f621358b0b44c1edb959a4cdb110b341b065787e1357161";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -95,7 +97,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "fa65e3dfbc3cb524b5e52375d6cc774d21b73af5493f713c6084fca79caeeb3e";
+    source "7bed35a2348772dbc0b865b2f037a884cc47eadff723fee5decc562177dc29d6";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -121,7 +123,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "1c82dba5f5cb1f68199aa7e3c1b50318caae1c0e200350cf257384fc34430dd9";
+    source "c708221f4f9e24363cf1e7817daa2ffa4b267cf64cffaa596612245d0b7ac6af";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -155,7 +157,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4e236370ca002bbbc92f27a101018d457fda92d287019f6f115d4aaa50ac19d0";
+    source "1ca5fb94d0fc209c3c4438a7b0c0cc1bc7fd98311da5f597dc6f2912b741c5ab";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -265,7 +267,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "73514a840a7d21673ee6c91a640f38fc778fc36638ed2ffdc4b2c5df46a241b5";
+    source "8cba85190b7bb0a40fd4031850a380c7df4a9d325eaa2101bc2a3416fbd2938a";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -319,14 +321,13 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "ca97be29aaa7e4e260f46eea3217b40bf0c986c63a12d5e4c9842ba608ecf079";
+    source "3233263b852433386fd591373b3fc7803ea6d8e6873d05bfe307649c3b08f7ae";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
 define_kernel! {
     /// Steps 2 and 3 of an outer round: walkers claim each triangle that they cross; the least word says who owns it. Who finds a
-    /// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers. Who leaves a
-    /// hub and does not own the triangle there does not walk.
+    /// lower word, or has its own replaced, does not own its whole chain. Walkers first, then later pieces of walkers.
     MarkChains(MarkChainsArgs) = "mark_chains" and "mark_chains.integers";
     buffers {
         0: far_read triangles: View<'a, u32>,
@@ -352,7 +353,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "89257acb9c8578a11c2b9f090553eddcd1ef3bd98381d6db51e8bd4b0b2d9198";
+    source "de9aa23eb05990d4b050ec45307d6c8f9f2b221b883ed6252c425ac814484ed8";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -426,7 +427,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "88776d715cfe018da02ab787183aab9498524785ca76b79b31e072d096b26bc7";
+    source "24a2b02a809a3eddaaa7bf015654da9718e073e3c137f942ee70f68026d33945";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -506,7 +507,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "4519c1e8a56686b9af538d1947a806e3cc3ca3e70c0446f3dbdb5e797c3fa522";
+    source "9c231121ad511ebaccfa3dfb4b6f6f5079805d142791f79ec9ef9dd644213c28";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -541,7 +542,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "dc323f6d7bdda2f19600592f7d72fcea8814e08cc3ca71fea9deac780e6afea2";
+    source "82ad14b2e71ff6329a44c7084853f1abf4c811b39c8d6b6d391686e8d90ab279";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

@@ -21,7 +21,7 @@ pub const LONGEST: usize = 40;
 pub const GOES_ON: usize = 3;
 pub const INNER_LIMIT: usize = 4;
 pub const OUTER: usize = 2;
-pub const WALKERS: usize = 8;
+pub const WALKERS: usize = 7;
 pub const MARKED: usize = 6;
 pub const LOSERS: usize = 9;
 pub const WAITED: usize = 10;
@@ -33,7 +33,7 @@ pub const INNER: usize = 17;
 pub const EDGES_ALREADY: usize = 20;
 pub const WALKED: usize = 24;
 pub const INNER_ROUNDS: usize = 27;
-pub const ADMITTED: usize = 7;
+pub const ADMITTED: usize = 8;
 pub const HUBS: usize = 21;
 pub const STOLEN: usize = 11;
 pub const HELD: usize = 19;
@@ -232,6 +232,7 @@ pub struct On {
     pub spokes: Buffer<u32>,
     pub degrees: Buffer<u32>,
     pub walkers: Buffer<u32>,
+    pub admitted: Buffer<u32>,
     pub firsts: Buffer<u32>,
     pub runs: Buffer<u32>,
     pub pieces: Buffer<[u32; 4]>,
@@ -278,6 +279,7 @@ impl On {
             spokes: gpu.buffer(&case.spokes),
             degrees: gpu.buffer(&case.degrees),
             walkers: gpu.buffer(&vec![7; room]),
+            admitted: gpu.buffer(&vec![7; room]),
             firsts: gpu.buffer(&case.firsts()),
             runs: gpu.buffer(&vec![NONE; room]),
             pieces: gpu.buffer(&[[7; 4]]),

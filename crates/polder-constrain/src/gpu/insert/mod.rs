@@ -54,7 +54,7 @@ enum Word {
     Left = 0,
     Inserted = 1,
     Stuck = 5,
-    Walkers = 8,
+    Admitted = 8,
     EdgesAlready = 20,
     Rebuilt = 39,
     Intersections = 22,
@@ -115,7 +115,7 @@ pub struct Input<'a> {
     pub pieces: Option<(Grid, &'a pieces::Buffers)>,
 }
 
-/// What the stage holds beside the mesh: 32 bytes a slot, 16 a sub-constraint and 8 a piece.
+/// What the stage holds beside the mesh: 32 bytes a slot, 20 a sub-constraint and 8 a piece.
 #[derive(Debug)]
 pub struct Buffers {
     slots: usize,
@@ -123,7 +123,9 @@ pub struct Buffers {
     state: Buffer<[u32; 4]>,
     /// Of even rounds, and of odd ones: two buffers of half the size find room where one does not.
     pairs: [Buffer<[u32; 2]>; 2],
+    /// Those that are to walk, and of these those that do.
     walkers: Buffer<u32>,
+    admitted: Buffer<u32>,
     firsts: Buffer<u32>,
     runs: Buffer<u32>,
     lost: Buffer<u32>,
@@ -140,7 +142,7 @@ impl Buffers {
 
     /// Gives all of it; see [`Buffer::give`].
     pub fn give(&self, pool: &Pool) {
-        for words in [&self.walkers, &self.firsts, &self.runs, &self.lost, &self.piece_walked] {
+        for words in [&self.walkers, &self.admitted, &self.firsts, &self.runs, &self.lost, &self.piece_walked] {
             words.give(pool);
         }
         self.state.give(pool);
@@ -253,6 +255,7 @@ impl Stage {
             .buffer::<[u32; 2]>("pairs of even rounds", slots)
             .buffer::<[u32; 2]>("pairs of odd rounds", slots)
             .buffer::<u32>("walkers", sub_constraints)
+            .buffer::<u32>("admitted walkers", sub_constraints)
             .buffer::<u32>("first edges crossed", sub_constraints)
             .buffer::<u32>("pieces of walkers", sub_constraints)
             .buffer::<u32>("lost", sub_constraints)
@@ -282,6 +285,7 @@ impl Stage {
                 Buffer::new(device, "pairs of odd rounds", slots)?,
             ],
             walkers: Buffer::new(device, "walkers", sub_constraints)?,
+            admitted: Buffer::new(device, "admitted walkers", sub_constraints)?,
             firsts: Buffer::new(device, "first edges crossed", sub_constraints)?,
             runs: Buffer::new(device, "pieces of walkers", sub_constraints)?,
             lost: Buffer::new(device, "lost", sub_constraints)?,

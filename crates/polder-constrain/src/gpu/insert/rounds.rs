@@ -21,7 +21,7 @@ impl Stage {
         let (triangles, links, positions) = (mesh.corners(), mesh.twins(), mesh.positions().cast());
         let (state, words) = (buffers.state.view().cast(), buffers.words.view());
         let Input { spokes, degrees, .. } = input;
-        let (walkers, lost) = (buffers.walkers.view(), buffers.lost.view());
+        let (walkers, admitted, lost) = (buffers.walkers.view(), buffers.admitted.view(), buffers.lost.view());
         let (firsts, runs, piece_walked) = (buffers.firsts.view(), buffers.runs.view(), buffers.piece_walked.view());
         let list = input.pieces.map_or(&buffers.no_pieces, |(_, list)| list);
         let (pieces, piece_count, piece_limit) = (list.pieces(), list.count(), list.pieces().len() as u32);
@@ -66,12 +66,13 @@ impl Stage {
             least,
         };
         recording.dispatch(&self.depart, groups, &arguments);
-        recording.dispatch(&self.admit, groups, &AdmitWalksArgs { walkers, firsts, lost, state, words });
+        let arguments = AdmitWalksArgs { walkers, firsts, admitted, lost, state, words };
+        recording.dispatch(&self.admit, groups, &arguments);
         if let Some((grid, list)) = input.pieces {
-            let listed = buffers.words.slice(Word::Walkers as usize..Word::Walkers as usize + 1)?;
+            let listed = buffers.words.slice(Word::Admitted as usize..Word::Admitted as usize + 1)?;
             let walkers = Walkers {
                 ends: input.sub_constraints,
-                list: walkers,
+                list: admitted,
                 listed,
                 runs,
                 spokes,
@@ -85,7 +86,7 @@ impl Stage {
             links,
             positions,
             sub_constraints,
-            walkers,
+            walkers: admitted,
             firsts,
             runs,
             pieces,
@@ -103,7 +104,7 @@ impl Stage {
             triangles,
             links,
             positions,
-            walkers,
+            walkers: admitted,
             runs,
             pieces: pieces.cast(),
             piece_count,
