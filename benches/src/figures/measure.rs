@@ -60,7 +60,7 @@ impl Sample {
             set: set.to_owned(),
             points: pslg.points().len(),
             constraints: ends.len(),
-            intersections: inserted.intersections,
+            intersections: walk.intersections(),
             inserting: inserted.all_flips(),
             restoring: restored.flips,
             outer_rounds: inserted.outer_rounds,

@@ -10,8 +10,9 @@ pub struct InsertReport {
     pub sub_constraints: u64,
     /// Those that were edges before the first flip.
     pub edges_already: u64,
-    /// Pairs of a sub-constraint and a triangle that it crosses, before the first flip; without those that wait at hubs first.
-    pub intersections: u64,
+    /// Pairs of a sub-constraint and a triangle that it crosses, before the first flip. Nothing where there are hubs, since not
+    /// all that begin there walk then; [`Walk::intersections`](crate::Walk::intersections) knows.
+    pub intersections: Option<u64>,
     /// Triangles visited by the walks of all outer rounds.
     pub walked: u64,
     /// Outer rounds.
@@ -35,7 +36,10 @@ impl fmt::Display for InsertReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let [one, two, three] = self.flips;
         write!(f, "{} sub-constraints ({} edges already), ", self.sub_constraints, self.edges_already)?;
-        write!(f, "{} intersections, {} outer and ", self.intersections, self.outer_rounds)?;
+        if let Some(intersections) = self.intersections {
+            write!(f, "{intersections} intersections, ")?;
+        }
+        write!(f, "{} outer and ", self.outer_rounds)?;
         write!(f, "{} inner rounds, {} chains rebuilt, flips {one} + {two} + {three}", self.inner_rounds, self.rebuilt)
     }
 }

@@ -156,7 +156,7 @@ pub(crate) fn run(pslg: &Pslg, options: &Options, watch: &mut Stopwatch) -> Resu
         "constrain",
         [
             ("pieces", insertion.sub_constraints),
-            ("intersections", insertion.intersections),
+            ("intersections", walk.intersections()),
             ("rounds", insertion.inner_rounds),
             ("outer_rounds", insertion.outer_rounds),
             ("rebuilt", insertion.rebuilt),

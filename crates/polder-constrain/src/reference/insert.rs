@@ -170,7 +170,11 @@ impl<'a> Insertion<'a> {
             inner_rounds: INNER_ROUNDS,
             times: 1,
             bound: 0,
-            report: InsertReport { sub_constraints: sub_constraints.len() as u64, ..InsertReport::default() },
+            report: InsertReport {
+                sub_constraints: sub_constraints.len() as u64,
+                intersections: Some(0),
+                ..InsertReport::default()
+            },
         })
     }
 
@@ -280,7 +284,7 @@ impl<'a> Insertion<'a> {
         }
         self.report.walked += walked;
         if self.report.outer_rounds == 0 {
-            self.report.intersections = walked;
+            self.report.intersections = self.hubs.iter().all(Option::is_none).then_some(walked);
         }
         let long = walked / (LONG_CHAIN * (walkers.len() as u64).max(1));
         let late = self.report.outer_rounds / USUAL_ROUNDS;

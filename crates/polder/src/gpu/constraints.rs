@@ -195,15 +195,16 @@ impl Found {
     /// Both stages, each with what it counted.
     pub(super) fn counts(&self) -> [(&'static str, Vec<(&'static str, u64)>); 2] {
         let Self { pieces, vertices, insertion } = self;
-        let constrain = vec![
+        let intersections = insertion.intersections.map(|intersections| ("intersections", intersections));
+        let constrain = [
             ("pieces", insertion.sub_constraints),
             ("edges_already", insertion.edges_already),
-            ("intersections", insertion.intersections),
             ("rounds", insertion.inner_rounds),
             ("outer_rounds", insertion.outer_rounds),
             ("rebuilt", insertion.rebuilt),
             ("flips", insertion.all_flips()),
         ];
+        let constrain = constrain.into_iter().chain(intersections).collect();
         [("walk", vec![("pieces", *pieces), ("chain_vertices", *vertices)]), ("constrain", constrain)]
     }
 }

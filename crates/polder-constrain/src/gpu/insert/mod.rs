@@ -56,6 +56,7 @@ enum Word {
     Stuck = 5,
     Admitted = 8,
     EdgesAlready = 20,
+    Hubs = 21,
     Rebuilt = 39,
     Intersections = 22,
     Walked = 24,
@@ -185,7 +186,7 @@ impl Read {
         let report = InsertReport {
             sub_constraints: narrow(Word::Inserted) + narrow(Word::Left),
             edges_already: narrow(Word::EdgesAlready),
-            intersections: wide(Word::Intersections, 0),
+            intersections: (narrow(Word::Hubs) == 0).then_some(wide(Word::Intersections, 0)),
             walked: wide(Word::Walked, 0),
             outer_rounds: narrow(Word::OuterRounds),
             inner_rounds: narrow(Word::InnerRounds),
