@@ -13,9 +13,9 @@ pub enum Error {
     #[error("the validation layer VK_LAYER_KHRONOS_validation is not installed")]
     NoValidation,
     /// No device fits the selection.
-    #[error("no Vulkan device for {wanted}; there are: {found}")]
+    #[error("no Vulkan device {wanted}; there are: {found}")]
     NoDevice {
-        /// What was asked for.
+        /// What was asked for, to be said of a device: `has index 3`.
         wanted: String,
         /// The devices that there are, and why each was not taken.
         found: String,

@@ -44,10 +44,10 @@ impl Selection {
                 };
                 let able = devices.iter().filter(|info| info.usable() && info.kind != DeviceKind::Cpu);
                 able.min_by_key(rank)
-                    .ok_or_else(|| none("the best one (a CPU device has to be asked for)".to_owned()))?
+                    .ok_or_else(|| none("is a GPU that can be used, and a CPU has to be asked for".to_owned()))?
             }
             Selection::Index(index) => {
-                devices.iter().find(|info| info.index == *index).ok_or_else(|| none(format!("index {index}")))?
+                devices.iter().find(|info| info.index == *index).ok_or_else(|| none(format!("has index {index}")))?
             }
             Selection::Name(name) => {
                 let wanted = name.to_lowercase();
@@ -55,7 +55,7 @@ impl Selection {
                 let fits = |info: &&DeviceInfo| {
                     info.name.to_lowercase().contains(&wanted) || (any_cpu && info.kind == DeviceKind::Cpu)
                 };
-                devices.iter().find(fits).ok_or_else(|| none(format!("name `{name}`")))?
+                devices.iter().find(fits).ok_or_else(|| none(format!("has `{name}` in its name")))?
             }
         };
         if found.usable() {
