@@ -15,8 +15,6 @@ layout(push_constant, std430) uniform Args {
     ReadU32 listed; // how many
     MaybeReadU32 known; // by walker: whether it goes in one piece
     U32 piece_count; // zeros before; the sum in the third word and the fourth
-    int64_t low_x;
-    int64_t low_y;
     int exponent;
     uint limit;       // of walkers in the list
     uint piece_length; // in places
@@ -37,7 +35,7 @@ void main() {
             uvec2 both = ends.at[walker];
             Point a = point_at(positions, both.x);
             Point b = point_at(positions, both.y);
-            mine += wanted_pieces(a, b, low_x, low_y, exponent, piece_length) - 1u;
+            mine += wanted_pieces(a, b, exponent, piece_length) - 1u;
         }
     }
     if (mine != 0u) {

@@ -16,8 +16,6 @@ layout(push_constant, std430) uniform Args {
     WriteU32 runs;    // by walker: where its later pieces stand, or NONE
     U32x4 pieces;
     U32 piece_count;  // and behind it how many are wanted, in two words
-    int64_t low_x;
-    int64_t low_y;
     int exponent;
     uint limit;       // of walkers in the list
     uint piece_limit;
@@ -37,7 +35,7 @@ void main() {
         uvec2 both = ends.at[walker];
         Point a = point_at(positions, both.x);
         Point b = point_at(positions, both.y);
-        uint wanted = wanted_pieces(a, b, low_x, low_y, exponent, piece_length) / share;
+        uint wanted = wanted_pieces(a, b, exponent, piece_length) / share;
         uint run = NONE;
         if (wanted > 1u) {
             run = atomicAdd(piece_count.at[0], wanted - 1u);

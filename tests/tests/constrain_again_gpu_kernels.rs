@@ -5,8 +5,7 @@
 mod constrain_support;
 mod vulkan_support;
 
-use constrain_support::Start;
-use glam::DVec2;
+use constrain_support::{Start, grid};
 use polder_constrain::gpu::pieces::Grid;
 use polder_constrain::kernels::*;
 use polder_constrain::reference::kernels as expected;
@@ -117,8 +116,7 @@ struct Case {
 
 fn case(count: usize, seed: u64) -> Case {
     let start = Start::stage_4(&generate::through_vertices(count, seed));
-    let [low, high] = [DVec2::min, DVec2::max].map(|f| start.positions.iter().copied().reduce(f).unwrap());
-    let grid = Grid::over(low, high, start.positions.len());
+    let grid = grid(&start.positions);
     let (spokes, _) = expected::find_spokes(&start.mesh, start.positions.len());
     let [a, b] = start.constraints[0];
     let ends = vec![[a, b], [3, 7], [b, a], [a, 5]];

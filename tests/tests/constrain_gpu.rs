@@ -2,8 +2,10 @@
 #![cfg(feature = "gpu-tests")]
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+mod constrain_support;
 mod vulkan_support;
 
+use constrain_support::grid;
 use glam::DVec2;
 use polder_constrain::gpu::pieces::Grid;
 use polder_constrain::gpu::walk::{Buffers, Counts, Input, Names, Read, Stage};
@@ -51,12 +53,6 @@ struct On {
     buffers: Buffers,
     read: Read,
     recording: polder_vulkan::Recording,
-}
-
-/// A grid over all points.
-fn grid(positions: &[DVec2]) -> Grid {
-    let [low, high] = [DVec2::min, DVec2::max].map(|f| positions.iter().copied().reduce(f).unwrap());
-    Grid::over(low, high, positions.len())
 }
 
 fn record(gpu: &mut Gpu, stage: &Stage, case: &Case, stops: usize, grid: Option<Grid>) -> On {

@@ -5,7 +5,7 @@
 mod constrain_support;
 mod vulkan_support;
 
-use constrain_support::Start;
+use constrain_support::{Start, grid};
 use glam::DVec2;
 use polder_constrain::gpu::pieces::{Buffers, Grid, Stage, Walkers};
 use polder_constrain::reference::kernels::{self as expected, Beginning};
@@ -26,11 +26,6 @@ struct Case {
     list: Vec<u32>,
     spokes: Vec<u32>,
     degrees: Vec<u32>,
-}
-
-fn grid(positions: &[DVec2]) -> Grid {
-    let [low, high] = [DVec2::min, DVec2::max].map(|f| positions.iter().copied().reduce(f).unwrap());
-    Grid::over(low, high, positions.len())
 }
 
 impl Case {

@@ -113,17 +113,15 @@ define_kernel! {
         40: both piece_count: View<'a, u32>,
     }
     values {
-        48: low_x: i64,
-        56: low_y: i64,
-        64: exponent: i32,
-        68: limit: u32,
-        72: piece_length: u32,
+        48: exponent: i32,
+        52: limit: u32,
+        56: piece_length: u32,
     }
-    argument_bytes 76;
+    argument_bytes 60;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "c708221f4f9e24363cf1e7817daa2ffa4b267cf64cffaa596612245d0b7ac6af";
+    source "642065e8a8673cc9e8d990233415cc28c826aea70bc09b03e75c424ff3ececcc";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -496,18 +494,16 @@ define_kernel! {
         56: both piece_count: View<'a, u32>,
     }
     values {
-        64: low_x: i64,
-        72: low_y: i64,
-        80: exponent: i32,
-        84: limit: u32,
-        88: piece_limit: u32,
-        92: piece_length: u32,
+        64: exponent: i32,
+        68: limit: u32,
+        72: piece_limit: u32,
+        76: piece_length: u32,
     }
-    argument_bytes 96;
+    argument_bytes 80;
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "9c231121ad511ebaccfa3dfb4b6f6f5079805d142791f79ec9ef9dd644213c28";
+    source "2991a54edaf704ebc8952fddbd8df6fd9ad5c882b0819daf233f6b05a6ad285c";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

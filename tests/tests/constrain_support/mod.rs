@@ -2,6 +2,7 @@
 #![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "tests; each file uses a part")]
 
 use glam::DVec2;
+use polder_constrain::gpu::pieces::Grid;
 use polder_constrain::reference;
 use polder_mesh::{GhostMesh, NONE, Parts, Pslg, Triangulation};
 
@@ -50,4 +51,10 @@ impl Start {
         chains.rename(&self.names);
         Triangulation::from_mesh(&self.mesh, &self.names, Parts { representatives: self.representatives, chains })
     }
+}
+
+/// A grid over all points, of which there is one at least.
+pub fn grid(positions: &[DVec2]) -> Grid {
+    let [low, high] = [DVec2::min, DVec2::max].map(|f| positions.iter().copied().reduce(f).unwrap());
+    Grid::over(low, high, positions.len())
 }

@@ -239,7 +239,7 @@ pub struct Walkers<'a> {
     pub spokes: View<'a, u32>,
     /// By vertex how many do.
     pub degrees: View<'a, u32>,
-    /// By walker: whether it goes in one piece, in the second bit or the third; those that begin elsewhere do.
+    /// By walker: whether it goes in one piece, in the second bit.
     pub known: Option<View<'a, u32>>,
 }
 
@@ -318,8 +318,6 @@ impl Stage {
             listed: walkers.listed,
             known: walkers.known,
             piece_count,
-            low_x,
-            low_y,
             exponent,
             limit: walkers.list.len() as u32,
             piece_length: grid.piece_length,
@@ -334,8 +332,6 @@ impl Stage {
             runs: walkers.runs,
             pieces,
             piece_count,
-            low_x,
-            low_y,
             exponent,
             limit: walkers.list.len() as u32,
             piece_limit,
