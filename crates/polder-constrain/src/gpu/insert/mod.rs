@@ -4,7 +4,7 @@
 //!
 //! 1. *Depart.* Sub-constraints that do not own their whole chain are listed; before the first round those that are edges are found
 //!    by the numbers of vertices alone. The others leave the star of one of their ends. Those that begin at a hub claim the
-//!    triangle there; who does not get it does not walk in this round.
+//!    triangle there; who does not get it does not walk in this round. Those that do walk have a list of their own.
 //! 2. *Mark.* The others walk, and each triangle that they cross takes the least word by an atomic minimum. The word has the
 //!    owner's priority above and the edges by which the owner comes in and goes out below. Who finds a lower word, or has its
 //!    own replaced, does not own its whole chain; so that is known without counting. Who finds a triangle free stamps
@@ -27,6 +27,10 @@
 //!
 //! Departures from the reference, none of which shows in the result: only pairs are listed, not triangles; a pair that was not
 //! flipped and of which no triangle has changed is not looked at again.
+//!
+//! Tried on an NVIDIA H200 with a million constraints of all lengths among ten million points, without gain: constraints in
+//! the order of their places (rebuilding 3.8 ms in place of 4.0, walks 2.6 in place of 2.7), and walkers in the order of their
+//! lengths within each 256 (4.0 and 2.6). Neither scattered access nor short walks that wait for long ones are the bound.
 
 mod rounds;
 
