@@ -110,6 +110,24 @@ fn buffers_grow_by_half() {
     assert_eq!(gpu.device.memory_use().used, 40_000);
 }
 
+/// A driver leaves something to do to the end of each thread that ran its code, so it must be there then.
+#[test]
+fn threads_may_end_after_their_devices() {
+    for _ in 0..8 {
+        let (send, devices) = std::sync::mpsc::channel();
+        let (let_go, ends) = std::sync::mpsc::channel::<()>();
+        let thread = std::thread::spawn(move || {
+            let gpu = Gpu::open();
+            work(&gpu.device).unwrap();
+            send.send(gpu).unwrap();
+            ends.recv().unwrap();
+        });
+        drop(devices.recv().unwrap());
+        let_go.send(()).unwrap();
+        thread.join().unwrap();
+    }
+}
+
 /// Everything that can fail, in one piece of work.
 fn work(device: &Device) -> Result<Vec<u32>, Error> {
     let len = 5000;

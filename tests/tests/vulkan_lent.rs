@@ -15,7 +15,7 @@ use polder_vulkan::{
     Buffer, CacheFolder, Device, Engine, Error, Feature, Lent, Recording, RunOptions, SelfTest, requirements,
 };
 use std::ffi::c_void;
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use vulkan_support::{Gpu, options, words};
 
 type Messages = Mutex<Vec<String>>;
@@ -156,12 +156,6 @@ impl Owner {
     }
 }
 
-/// Owners make and destroy their devices one after the other: a driver was seen to fail where threads did it side by side.
-fn alone() -> MutexGuard<'static, ()> {
-    static ALONE: Mutex<()> = Mutex::new(());
-    ALONE.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
 fn work(device: &Device) -> Result<Vec<u32>, Error> {
     let len = 5000;
     let mut engine = Engine::new(device)?;
@@ -203,7 +197,6 @@ fn given_out(allocator: &Mutex<Allocator>) -> u64 {
 
 #[test]
 fn everything_lent_is_used_and_nothing_of_it_destroyed() {
-    let _alone = alone();
     let expected = work(&Gpu::open().device);
     let owner = Owner::new(false);
     let allocator = owner.allocator();
@@ -232,7 +225,6 @@ fn everything_lent_is_used_and_nothing_of_it_destroyed() {
 fn whole_triangulations_on_a_lent_device() {
     use polder::Options;
 
-    let _alone = alone();
     let pslg = polder_io::generate::segments(400, 80, 3);
     let expected = polder::triangulate(&pslg, &Options::with_backend(polder::Backend::Cpu)).unwrap().triangulation;
     let owner = Owner::new(Gpu::open().device.has(Feature::ShaderFloat64));
@@ -259,7 +251,6 @@ fn whole_triangulations_on_a_lent_device() {
 
 #[test]
 fn a_lent_device_may_fail_and_is_still_the_owners() {
-    let _alone = alone();
     let expected = work(&Gpu::open().device);
     let owner = Owner::new(false);
     let allocator = owner.allocator();
@@ -285,7 +276,6 @@ fn a_lent_device_may_fail_and_is_still_the_owners() {
 
 #[test]
 fn optional_features_are_used_if_they_are_named() {
-    let _alone = alone();
     let float64 = Gpu::open().device.has(Feature::ShaderFloat64);
     let owner = Owner::new(float64);
     let device = owner.lend(None, &[Feature::ShaderFloat64], None);
@@ -301,7 +291,6 @@ fn optional_features_are_used_if_they_are_named() {
 /// That the layer, where there is one, would have found it: a buffer that outlives the device.
 #[test]
 fn what_is_left_behind_is_named() {
-    let _alone = alone();
     let owner = Owner::new(false);
     // SAFETY: left behind on purpose.
     unsafe {

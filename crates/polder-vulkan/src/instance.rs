@@ -21,10 +21,10 @@ pub(crate) struct InstanceInner {
 }
 
 /// Held while instances and devices are made, listed and destroyed. The specification lets threads do that side by side;
-/// an NVIDIA driver (580) now and then never came back from it.
-pub(crate) fn one_at_a_time() -> MutexGuard<'static, ()> {
-    static LOCK: Mutex<()> = Mutex::new(());
-    LOCK.lock().unwrap_or_else(PoisonError::into_inner)
+/// an NVIDIA driver (580) now and then never came back from it. What it guards is the instance that everybody shares.
+pub(crate) fn one_at_a_time() -> MutexGuard<'static, Option<Instance>> {
+    static SHARED: Mutex<Option<Instance>> = Mutex::new(None);
+    SHARED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Vulkan on this machine, loaded at run time.
@@ -36,10 +36,21 @@ pub struct Instance {
 const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 impl Instance {
-    /// Loads Vulkan. With `validation` the Khronos layer watches every call, and [`Instance::messages`] tells what it
-    /// said.
+    /// Loads Vulkan; from then on it stays loaded until the process ends, and all calls give the same instance. With
+    /// `validation` they give one of their own: the Khronos layer watches its every call, and [`Instance::messages`]
+    /// tells what it said.
     pub fn load(validation: bool) -> Result<Self, Error> {
-        let alone = one_at_a_time();
+        // The last instance to go would unload the driver, under threads that ran its code and have yet to end: NVIDIA's
+        // (580) has something to do then, and the process crashes.
+        let mut shared = one_at_a_time();
+        let instance = match &*shared {
+            Some(instance) => instance.clone(),
+            None => shared.insert(Instance::new(false)?).clone(),
+        };
+        if validation { Instance::new(true) } else { Ok(instance) }
+    }
+
+    fn new(validation: bool) -> Result<Self, Error> {
         // SAFETY: the library found is the system's Vulkan loader; loading it runs its initializers, which any Vulkan
         // program trusts.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| Error::NoVulkan(error.to_string()))?;
@@ -81,16 +92,17 @@ impl Instance {
             vk::Result::ERROR_INCOMPATIBLE_DRIVER => Error::NoVulkan("no driver is installed".to_owned()),
             result => Error::Vulkan { call: "vkCreateInstance", result },
         })?;
-        drop(alone);
-        let mut inner = InstanceInner { raw, messenger: None, messages, owned: true, _entry: None };
+        let mut watcher = None;
         if validation {
-            let loaded = ext::debug_utils::Instance::new(&entry, &inner.raw);
+            let loaded = ext::debug_utils::Instance::new(&entry, &raw);
             // SAFETY: the extension is enabled, and the messages outlive the messenger (see `drop`).
-            let made = unsafe { loaded.create_debug_utils_messenger(&messenger_info(&inner.messages), None) }
-                .called("vkCreateDebugUtilsMessengerEXT")?;
-            inner.messenger = Some((loaded, made));
+            let made = unsafe { loaded.create_debug_utils_messenger(&messenger_info(&messages), None) }
+                .called("vkCreateDebugUtilsMessengerEXT")
+                // SAFETY: nothing else was made from the instance.
+                .inspect_err(|_| unsafe { raw.destroy_instance(None) })?;
+            watcher = Some((loaded, made));
         }
-        inner._entry = Some(entry);
+        let inner = InstanceInner { raw, messenger: watcher, messages, owned: true, _entry: Some(entry) };
         Ok(Instance { inner: Arc::new(inner) })
     }
 
