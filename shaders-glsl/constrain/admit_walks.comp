@@ -15,7 +15,7 @@ layout(push_constant, std430) uniform Args {
 };
 
 void main() {
-    uint count = words.at[DEPART_FAULT] == NONE ? words.at[WALKERS] : 0u;
+    uint count = has_failed(words) ? 0u : words.at[WALKERS];
     for (uint begin = group_index() * WORKGROUP; begin < count; begin += item_stride()) {
         uint i = begin + gl_LocalInvocationIndex;
         uint s;

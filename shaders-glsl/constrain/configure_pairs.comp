@@ -42,7 +42,7 @@ uint beside(uint t, bool after) {
 void main() {
     uint round = words.at[ROUND];
     uint parity = round & 1u;
-    bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
+    bool fails = has_failed(words);
     uint end = fails || words.at[MARKED] == 0u ? 0u : slots;
     // Before the first round nothing was owned.
     uint turns = words.at[OUTER] == 0u ? 1u : 3u;

@@ -22,7 +22,7 @@ void main() {
     uint round = words.at[ROUND] + 1u;
     uint parity = words.at[ROUND] & 1u;
     uint count = words.at[CANDIDATES + parity];
-    bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
+    bool fails = has_failed(words);
     bool goes_on = words.at[GOES_ON] == 0u || words.at[INNER] < words.at[INNER_LIMIT];
     uint end = count >= least && goes_on && !fails ? count : 0u;
     if (gl_LocalInvocationIndex < 4u) {
@@ -33,11 +33,14 @@ void main() {
     for (uint i = item_index(); i < end; i += item_stride()) {
         uvec2 entry = pairs_of(parity).at[i];
         if (wins(links, state, parity, entry, i < held ? round - 1u : NONE)) {
-            if (flip_pair(triangles, links, state, spokes, degrees, round, entry.x)) {
+            uint done = flip_pair(triangles, links, state, spokes, degrees, words, round, entry.x);
+            if (done == INSERTS) {
                 atomicAdd(flips_of_group[3], 1u);
             }
-            pairs_of(parity).at[i].x = entry.x | WON;
-            atomicAdd(flips_of_group[entry.y >> CLAIM_BITS], 1u);
+            if (done != IS_BLOCKED) {
+                pairs_of(parity).at[i].x = entry.x | WON;
+                atomicAdd(flips_of_group[entry.y >> CLAIM_BITS], 1u);
+            }
         }
     }
     barrier();

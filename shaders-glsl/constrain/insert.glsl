@@ -125,6 +125,10 @@ const uint LISTED = 3u;
 #define OWNED(T) (4u * (T) + 3u)
 #define stamp_of(STATE, T) (~STATE.at[STAMP(T)])
 
+bool has_failed(WORDS words) {
+    return words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
+}
+
 uint scatter(uint id, uint bits) {
     uint mask = (1u << bits) - 1u;
     uint x = id;

@@ -27,7 +27,7 @@ shared uint inserted;
 
 void main() {
     bool first = words.at[OUTER] == 0u;
-    bool nobody = words.at[GOES_ON] != 0u || (!first && words.at[WAITED] == 0u);
+    bool nobody = has_failed(words) || words.at[GOES_ON] != 0u || (!first && words.at[WAITED] == 0u);
     uint end = nobody ? 0u : length_of(counter, limit);
     if (gl_LocalInvocationIndex == 0u) {
         inserted = 0u;

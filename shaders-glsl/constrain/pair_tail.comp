@@ -98,7 +98,7 @@ void main() {
     uint round = words.at[ROUND];
     uint parity = round & 1u;
     uint count = words.at[CANDIDATES + parity];
-    bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
+    bool fails = has_failed(words);
     uint before = words.at[INNER];
     uint inner_limit = words.at[GOES_ON] == 0u ? limit_of_round() : words.at[INNER_LIMIT];
     uint left = fails ? 0u : min(inner_limit - min(before, inner_limit), most);
@@ -109,7 +109,7 @@ void main() {
     barrier();
     uint rounds = 0u;
     uint taken = 0u;
-    while (count != 0u && count < room && rounds < left && taken <= most_pairs) {
+    while (count != 0u && count < room && rounds < left && taken <= most_pairs && !fails) {
         room = min(least, 0x3fffffffu) * 4u;
         rounds++;
         round++;
@@ -121,11 +121,14 @@ void main() {
         for (uint i = rank; i < count; i += WORKGROUP) {
             uvec2 entry = pairs_of(parity).at[i];
             if (wins(links, state, parity, entry, i < held ? round - 1u : NONE)) {
-                if (flip_pair(triangles, links, state, spokes, degrees, round, entry.x)) {
+                uint done = flip_pair(triangles, links, state, spokes, degrees, words, round, entry.x);
+                if (done == INSERTS) {
                     atomicAdd(flips[3], 1u);
                 }
-                pairs_of(parity).at[i].x = entry.x | WON;
-                atomicAdd(flips[entry.y >> CLAIM_BITS], 1u);
+                if (done != IS_BLOCKED) {
+                    pairs_of(parity).at[i].x = entry.x | WON;
+                    atomicAdd(flips[entry.y >> CLAIM_BITS], 1u);
+                }
             }
         }
         wait();
@@ -148,6 +151,7 @@ void main() {
         wait();
         count = next_count;
         parity ^= 1u;
+        fails = has_failed(words);
         wait();
     }
     if (rank == 0u) {

@@ -60,10 +60,16 @@ bool is_flipped(uint stamp, uint round) {
     return stamp >> 2 == round && (stamp & 3u) != LISTED;
 }
 
+// What has become of a pair that has all it claimed: the new edge is its owner; the owner still crosses it; or it was left as it
+// is, since the edge to be flipped is a constrained one.
+const uint INSERTS = 0u;
+const uint FLIPS_ON = 1u;
+const uint IS_BLOCKED = 2u;
+
 // Flips h, from A to C, both of the same owner; nobody else touches them. Outer links keep the names that they had before the
-// round. Whether the new edge is the owner itself.
-bool flip_pair(
-    MESH triangles, MESH links, WORDS state, WORDS spokes, WORDS degrees, uint round, uint h
+// round.
+uint flip_pair(
+    MESH triangles, MESH links, WORDS state, WORDS spokes, WORDS degrees, WORDS words, uint round, uint h
 ) {
     uint g = twin(links, h);
     uint t = h / 3u;
@@ -83,6 +89,11 @@ bool flip_pair(
     uint t_outer = pick(links_t, k1);
     uint u_outer = pick(links_u, j1);
     uint word = state.at[OWNED(t)];
+    if ((pick(links_t, k) & CONSTRAINED) != 0u) {
+        // What crosses the owner came to be an edge by the owner's flips, which need not have walked since.
+        atomicMin(words.at[WALK_FAULT], owner_of(word) << 2 | BLOCKED);
+        return IS_BLOCKED;
+    }
     int near_side = side_of(word);
     int far_side = side_of(state.at[OWNED(u)]);
     bool zero = near_side == 0 && far_side == 0;
@@ -110,7 +121,7 @@ bool flip_pair(
     if (far_side == 0) {
         atomicAdd(degrees.at[far], 1u);
     }
-    return zero;
+    return zero ? INSERTS : FLIPS_ON;
 }
 
 // The other side of a half-edge after the flips of a round, whether its link has been renewed or not. The outer edge behind

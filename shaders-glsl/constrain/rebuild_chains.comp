@@ -219,7 +219,7 @@ bool rebuild(uint first) {
 }
 
 void main() {
-    bool fails = words.at[DEPART_FAULT] != NONE || words.at[WALK_FAULT] != NONE;
+    bool fails = has_failed(words);
     uint end = fails ? 0u : words.at[ADMITTED];
     uint piece_end = end == 0u ? 0u : min(piece_count.at[0], piece_limit);
     if (gl_LocalInvocationIndex == 0u) {

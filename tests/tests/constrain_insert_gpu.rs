@@ -176,6 +176,48 @@ fn crossings_end_as_blocked() {
     assert!(blocked > 4, "{blocked}");
 }
 
+/// A constraint, and others that its own flips make edges although they cross it: met when a constrained edge would be flipped away.
+#[test]
+fn crossings_end_as_blocked_by_flips() {
+    let (mut gpu, stages) = stages();
+    let mut by_flips = 0;
+    for seed in 0..24 {
+        let mut start = Start::delaunay(&polder_io::generate::uniform(100, seed));
+        let Start { mesh, positions, .. } = &start;
+        let chain = reference::triangle_chain(mesh, positions, [0, 99]).unwrap().triangles;
+        let edges = chain.iter().flat_map(|&t| (0..3).map(move |k| 3 * t + k));
+        let edges = edges.filter(|&h| chain.contains(&(mesh.twin(h) / 3))).step_by(5);
+        let diagonals = edges.map(|h| [mesh.apex(h), mesh.apex(mesh.twin(h))]);
+        start.constraints = std::iter::once([0, 99]).chain(diagonals).collect();
+        let mut subs = reference::walk(&start.mesh, &start.positions, &start.constraints).unwrap().sub_constraints;
+        for inner in 1..4 {
+            subs.rotate_left(1);
+            let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
+            let mut expected = start.mesh.clone();
+            let mut insertion = Insertion::new(&mut expected, &start.positions, &subs).unwrap();
+            insertion.set_inner_rounds(inner);
+            insertion.set_longest_rebuilt(0);
+            let mut error = Ok(());
+            while !insertion.is_done() && error.is_ok() {
+                let walks = insertion.report().outer_rounds;
+                error = insertion.outer_round();
+                by_flips += u32::from(error.is_err() && insertion.report().outer_rounds > walks);
+            }
+            let fault = error.err().map(|error| match error {
+                ConstrainError::Blocked { sub_constraint, .. } => {
+                    Fault::Blocked(subs.iter().position(|s| *s == sub_constraint).unwrap() as u32)
+                }
+                other => panic!("{other}"),
+            });
+            let rounds = Rounds { inner, longest: 0, least: 0, ..Rounds::default() };
+            let (counts, mesh) = run(&mut gpu, &stages[seed as usize % 2], &case, rounds);
+            assert_eq!(counts.fault, fault, "{seed}, {inner}");
+            assert!(mesh == expected, "{seed}, {inner}");
+        }
+    }
+    assert!(by_flips > 2, "{by_flips}");
+}
+
 /// Sub-constraints may come in any order and repeatedly: constrained Delaunay triangulations do not tell.
 #[test]
 fn any_order_gives_one_flipped_mesh() {

@@ -32,6 +32,7 @@ pub(crate) struct Whole {
     pub(crate) digest: Option<String>,
     #[serde(flatten)]
     pub(crate) on_device: OnDevice,
+    /// Memory of the device that is held beyond the input, the output included.
     pub(crate) bytes_a_point: f64,
     /// From memory of the host to memory of the host.
     pub(crate) host_to_host: HostToHost,
@@ -119,9 +120,10 @@ impl Bench {
         let host_to_host = self.host_to_host(gpu, pslg)?;
         gpu.release();
         let input = Input::new(gpu, pslg)?;
+        let before = gpu.device().memory_use().used;
         let on_device = self.on_device(gpu, &input)?;
         let points = pslg.points().len();
-        let held = gpu.device().memory_use().used - input.bytes();
+        let held = gpu.device().memory_use().used - before;
         Ok(Whole {
             points,
             constraints: pslg.constraints().len(),
@@ -242,10 +244,6 @@ impl Input {
 
     fn constraints(&self) -> usize {
         self.constraints.as_ref().map_or(0, |buffer| buffer.view().len())
-    }
-
-    fn bytes(&self) -> u64 {
-        (16 * self.points.view().len() + 8 * self.constraints()) as u64
     }
 
     fn triangulate(&self, gpu: &mut Gpu, options: &Options) -> Result<Report, polder::Error> {

@@ -19,7 +19,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "PhysicalStorageBufferAddresses", "Shader"];
-    source "e34f39f92f1e9c832d2694ec466096b93985c708b7bae1e83bf4e49fa8a6cf6f";
+    source "55187ed56ec18de003fd39c10febf00d45ed9f619823fe9279a2231b466d0f57";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -42,7 +42,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "ec773f085b9a48a89f621358b0b44c1edb959a4cdb110b341b065787e1357161";
+    source "bfc4417cf1e64bb25e07298eb7a7ab9ba06749927d508cb25b231c8ed4a483c0";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -97,7 +97,7 @@ define_kernel! {
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "GroupNonUniform", "GroupNonUniformArithmetic", "Int64",
         "PhysicalStorageBufferAddresses", "Shader"];
-    source "7bed35a2348772dbc0b865b2f037a884cc47eadff723fee5decc562177dc29d6";
+    source "22551f8d5b726c20bc7a0b2550e069a67792ddfe0f9802c451623e351dbd4d82";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -155,7 +155,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "1ca5fb94d0fc209c3c4438a7b0c0cc1bc7fd98311da5f597dc6f2912b741c5ab";
+    source "d80eb7b4649a908c9f9310a00f693c8ad62d4928101368ae614edb267f7e736d";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -265,7 +265,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "8cba85190b7bb0a40fd4031850a380c7df4a9d325eaa2101bc2a3416fbd2938a";
+    source "5a09a9b2ca48c0b8acc6aa4e00a95be349f661e395b9d0cf0faca6c8e2ae22d2";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -319,7 +319,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256];
     capabilities ["GroupNonUniform", "GroupNonUniformArithmetic", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "3233263b852433386fd591373b3fc7803ea6d8e6873d05bfe307649c3b08f7ae";
+    source "be74f8e328be75cbd24202a7a85dcb834c08d14832e1cf0ee9b7802ab6c1c8c3";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -351,7 +351,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "de9aa23eb05990d4b050ec45307d6c8f9f2b221b883ed6252c425ac814484ed8";
+    source "6f84e90267db2ab741972b13a7cbd40b9d4679f1fcaf8c51f0eaee408390f490";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -425,7 +425,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "24a2b02a809a3eddaaa7bf015654da9718e073e3c137f942ee70f68026d33945";
+    source "d9f5495851bcef0d03aaee12c7d35c7fea3a171164c74b0b2a5fa2c60171f412";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 
@@ -538,7 +538,7 @@ define_kernel! {
     workgroup [Constant(0), Fixed(1), Fixed(1)];
     constants ["WORKGROUP"(0) = 256, "ARITHMETIC"(1) = 1];
     capabilities ["Float64", "Int64", "PhysicalStorageBufferAddresses", "Shader"];
-    source "82ad14b2e71ff6329a44c7084853f1abf4c811b39c8d6b6d391686e8d90ab279";
+    source "5c6e845df1c1a8c6f98fb1e3d50659aed258e9b9920bb7eae84b26aac8f7d345";
     compiler "libshaderc 2023.2-1, SPIR-V 1.6 revision 1";
 }
 

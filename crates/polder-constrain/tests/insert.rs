@@ -121,7 +121,7 @@ fn follow(mesh: &mut GhostMesh, positions: &[DVec2], one: &[[u32; 2]], trial: Tr
     let mut before = measure(&insertion);
     let mut risen = 0;
     while !insertion.is_done() {
-        if insertion.inner_round() == 0 {
+        if insertion.inner_round().unwrap() == 0 {
             return Err(format!("no pair is flippable, at {before:?}"));
         }
         let after = measure(&insertion);
@@ -180,7 +180,7 @@ fn claims_2_and_3_need_the_look_ahead() {
         insertion.set_longest_rebuilt(0);
         insertion.mark().unwrap();
         while !insertion.is_done() && insertion.report().all_flips() <= 100 * 100 {
-            insertion.inner_round();
+            insertion.inner_round().unwrap();
         }
         failed[0] += u32::from(insertion.report().all_flips() > k * k);
         failed[1] += u32::from(insertion.report().all_flips() > 100 * 100);
@@ -225,6 +225,49 @@ fn crossing_constraints_are_an_error_before_any_flip() {
     assert_eq!(error, ConstrainError::NotAVertex { constraint: 1, vertex: 2 });
 }
 
+/// What crosses a constraint can become an edge by that one's own flips. Constrained edges stay all the same, and so one of the
+/// two ends as blocked, whatever the order.
+#[test]
+fn crossing_constraints_never_go_in_unnoticed() {
+    let mut met = [0; 2];
+    for seed in 0..400 {
+        let positions = uniform(100, seed);
+        let mesh = delaunay(&positions);
+        // One across the square, and the other diagonals of edges that it crosses: of some its ends lie on either side too.
+        let chain = triangle_chain(&mesh, &positions, [0, 99]).unwrap().triangles;
+        let edges = chain.iter().flat_map(|&t| (0..3).map(move |k| 3 * t + k));
+        let diagonals = edges.filter(|&h| chain.contains(&(mesh.twin(h) / 3)));
+        let diagonals = diagonals.map(|h| [mesh.apex(h), mesh.apex(mesh.twin(h))]).step_by(5);
+        let constraints: Vec<[u32; 2]> = std::iter::once([0, 99]).chain(diagonals).collect();
+        let walk = reference::walk(&mesh, &positions, &constraints).unwrap();
+        if reference::crossings(&mesh, &positions, &walk, 1).unwrap().pairs.is_empty() {
+            continue;
+        }
+        let mut subs = walk.sub_constraints;
+        for turn in 0..4 {
+            let mut mesh = mesh.clone();
+            let mut insertion = Insertion::new(&mut mesh, &positions, &subs).unwrap();
+            insertion.set_inner_rounds(1 + turn);
+            insertion.set_longest_rebuilt(3 * (turn % 2));
+            let mut edges = Vec::new();
+            let error = loop {
+                assert!(!insertion.is_done(), "{seed}, turn {turn}");
+                let walks = insertion.report().outer_rounds;
+                if let Err(error) = insertion.outer_round() {
+                    met[(insertion.report().outer_rounds - walks) as usize] += 1;
+                    break error;
+                }
+                let now = constrained_edges(insertion.mesh());
+                assert!(edges.iter().all(|edge| now.contains(edge)), "{seed}, turn {turn}");
+                edges = now;
+            };
+            assert!(matches!(error, ConstrainError::Blocked { .. }), "{seed}, turn {turn}: {error}");
+            subs.rotate_left(1);
+        }
+    }
+    assert!(met[0] > 1000 && met[1] > 40, "{met:?}, on walks and by flips");
+}
+
 /// A mesh that is no triangulation (its vertices moved after it was built) ends with a result or an error, never in a
 /// panic or an endless loop.
 #[test]
@@ -259,7 +302,7 @@ fn text_forms() {
     insertion.mark().unwrap();
     while !insertion.is_done() {
         text += &format!("chain {}\n", triangle_chain(insertion.mesh(), &positions, [0, 1]).unwrap());
-        insertion.inner_round();
+        insertion.inner_round().unwrap();
     }
     text += &format!("{}\n\n", insertion.report());
     let report = flip(&mut mesh, &positions).unwrap();

@@ -27,6 +27,7 @@ use super::configuration::Configuration;
 use super::insert::Insertion;
 use super::pairs::{Candidate, Owned, words_of_flip};
 use super::place::{self, FREE};
+use crate::ConstrainError;
 use polder_mesh::{NONE, twin_code};
 
 /// Rules other than the stage's own.
@@ -71,8 +72,13 @@ impl Inner {
 }
 
 impl Insertion<'_> {
-    /// One inner round; gives the number of flips. One without a flip does not count.
-    pub fn inner_round(&mut self) -> u64 {
+    /// One inner round; gives the number of pairs that won. One without any does not count.
+    ///
+    /// # Errors
+    ///
+    /// [`ConstrainError::Blocked`] names the lowest sub-constraint that would have flipped a constrained edge away. What crosses
+    /// a sub-constraint can become an edge by that one's own flips, without which none of the two need walk across the other.
+    pub fn inner_round(&mut self) -> Result<u64, ConstrainError> {
         let mut work = std::mem::take(&mut self.inner.work);
         for &t in &work {
             self.inner.listed[t as usize] = false;
@@ -120,13 +126,19 @@ impl Insertion<'_> {
         for &candidate in &candidates {
             self.list(candidate.h / 3);
         }
+        let mut blocked = None;
         for winner in &winners {
+            if self.mesh.is_constrained(winner.h) {
+                let owner = place::owner(self.owner[(winner.h / 3) as usize]);
+                blocked = blocked.into_iter().chain(owner.map(|s| (s, winner.h))).min();
+                continue;
+            }
             self.flip(winner.h);
             self.report.flips[usize::from(winner.case - 1)] += 1;
         }
         self.inner.candidates = candidates;
         self.report.inner_rounds += u64::from(!winners.is_empty());
-        winners.len() as u64
+        blocked.map_or(Ok(winners.len() as u64), |(s, h)| Err(self.blocked(s, h)))
     }
 
     /// The pairs that may be flipped now claim their triangles, whoever owns these after the walks.

@@ -36,7 +36,8 @@
 //! - A walk begins at the end with fewer edges, which makes all beginnings together linear: sub-constraints that do not
 //!   cross form a planar graph.
 //! - A sub-constraint that meets a constrained edge or a vertex is an error with their names. Crossings are to be found
-//!   before, by [`crossings`](super::crossings()): here some are met only after others have been inserted.
+//!   before, by [`crossings`](super::crossings()): here some are met only after others have been inserted. But one is met for
+//!   certain: no constrained edge is ever replaced, by a walk nor by a flip, so that in the end all of them are edges of one mesh.
 
 use super::configuration::Side;
 use super::fan::{Departure, depart_from, enter, leave};
@@ -222,7 +223,7 @@ impl<'a> Insertion<'a> {
         self.rebuild()?;
         let most = if self.waiting.is_empty() { self.bound } else { u64::from(self.inner_rounds * self.times) };
         for _ in 0..most {
-            if self.inner_round() == 0 {
+            if self.inner_round()? == 0 {
                 break;
             }
         }
@@ -406,9 +407,7 @@ impl<'a> Insertion<'a> {
                 return Ok(length);
             }
             if self.mesh.is_constrained(h) {
-                let mut edge = [self.mesh.origin(h), self.mesh.destination(h)];
-                edge.sort_unstable();
-                return Err(ConstrainError::Blocked { sub_constraint: ends, edge });
+                return Err(self.blocked(s, h));
             }
             let Some((g, side)) = enter(self.mesh, self.positions, h, line) else {
                 return Err(ConstrainError::Lost { ends });
@@ -428,6 +427,13 @@ impl<'a> Insertion<'a> {
             near = side as Side;
         }
         Err(ConstrainError::Lost { ends })
+    }
+
+    /// A sub-constraint crosses a constrained edge.
+    pub(super) fn blocked(&self, s: u32, h: u32) -> ConstrainError {
+        let mut edge = [self.mesh.origin(h), self.mesh.destination(h)];
+        edge.sort_unstable();
+        ConstrainError::Blocked { sub_constraint: self.sub_constraints[s as usize], edge }
     }
 
     fn lose(&mut self, s: u32) {
