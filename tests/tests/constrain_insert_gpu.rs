@@ -5,6 +5,7 @@
 #[path = "../../crates/polder-constrain/tests/common/bad_case.rs"]
 mod bad_case;
 mod constrain_support;
+mod random_support;
 mod vulkan_support;
 
 use constrain_support::Start;
@@ -64,19 +65,47 @@ fn run(gpu: &mut Gpu, stage: &Stage, case: &Case<'_>, rounds: Rounds) -> (Counts
     (counts, mesh.download(&mut gpu.engine).unwrap())
 }
 
-/// With the chains of up to so many triangles rebuilt.
-fn assert_inserted(gpu: &mut Gpu, stage: &Stage, name: &str, case: &Case<'_>, longest: u32) -> InsertReport {
+/// What became of an insertion, and whether it ended in inner rounds.
+struct Outcome {
+    report: InsertReport,
+    fault: Option<Fault>,
+    by_flips: bool,
+}
+
+/// The device inserts what the reference does, or ends as it does.
+fn assert_same(gpu: &mut Gpu, stage: &Stage, name: &str, case: &Case<'_>, rounds: Rounds) -> Outcome {
     let mut expected = case.mesh.clone();
     let mut insertion = Insertion::new(&mut expected, case.positions, case.sub_constraints).unwrap();
-    insertion.set_longest_rebuilt(longest);
-    while !insertion.is_done() {
-        insertion.outer_round().unwrap();
+    insertion.set_inner_rounds(rounds.inner);
+    if rounds.least == 0 {
+        insertion.set_longest_rebuilt(rounds.longest);
+    }
+    let (mut error, mut walks) = (Ok(()), 0);
+    while !insertion.is_done() && error.is_ok() {
+        walks = insertion.report().outer_rounds;
+        error = insertion.outer_round();
     }
     let report = insertion.report();
-    let (counts, mesh) = run(gpu, stage, case, Rounds { longest, least: 0, ..Rounds::default() });
-    assert_eq!(counts, Counts { report, inserted: report.sub_constraints, fault: None }, "{name}, {longest}");
-    assert!(mesh == expected, "{name}, {longest}: {report}");
-    report
+    let fault = error.err().map(|error| match error {
+        ConstrainError::Blocked { sub_constraint, .. } => {
+            Fault::Blocked(case.sub_constraints.iter().position(|s| *s == sub_constraint).unwrap() as u32)
+        }
+        other => panic!("{name}: {other}"),
+    });
+    let (counts, mesh) = run(gpu, stage, case, rounds);
+    assert_eq!(counts.fault, fault, "{name}, {rounds:?}");
+    assert!(mesh == expected, "{name}, {rounds:?}: {report}");
+    if fault.is_none() {
+        assert_eq!((counts.report, counts.inserted), (report, report.sub_constraints), "{name}, {rounds:?}");
+    }
+    Outcome { report, fault, by_flips: report.outer_rounds > walks }
+}
+
+/// With the chains of up to so many triangles rebuilt.
+fn assert_inserted(gpu: &mut Gpu, stage: &Stage, name: &str, case: &Case<'_>, longest: u32) -> InsertReport {
+    let outcome = assert_same(gpu, stage, name, case, Rounds { longest, least: 0, ..Rounds::default() });
+    assert_eq!(outcome.fault, None, "{name}");
+    outcome.report
 }
 
 /// Flips alone, some of both, and as it is done.
@@ -158,25 +187,14 @@ fn crossings_end_as_blocked() {
         let start = Start::stage_4(&pslg);
         let subs = reference::walk(&start.mesh, &start.positions, &start.constraints).unwrap().sub_constraints;
         let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
-        let mut expected = start.mesh.clone();
-        let error = reference::insert(&mut expected, &start.positions, &subs);
-        let (counts, mesh) = run(&mut gpu, &stages[seed as usize % 2], &case, Rounds::default());
-        match error {
-            Ok(report) => assert_eq!(counts.report, report),
-            Err(ConstrainError::Blocked { sub_constraint, .. }) => {
-                let lowest = subs.iter().position(|s| *s == sub_constraint).unwrap() as u32;
-                assert_eq!(counts.fault, Some(Fault::Blocked(lowest)));
-                assert!(counts.inserted < subs.len() as u64);
-                blocked += 1;
-            }
-            Err(other) => panic!("{other}"),
-        }
-        assert!(mesh == expected, "{seed}");
+        let outcome = assert_same(&mut gpu, &stages[seed as usize % 2], "crossing", &case, Rounds::default());
+        blocked += u32::from(outcome.fault.is_some());
     }
     assert!(blocked > 4, "{blocked}");
 }
 
-/// A constraint, and others that its own flips make edges although they cross it: met when a constrained edge would be flipped away.
+/// A constraint, and others that its own flips make edges although they cross it: met when a constrained edge would be flipped
+/// away.
 #[test]
 fn crossings_end_as_blocked_by_flips() {
     let (mut gpu, stages) = stages();
@@ -193,29 +211,37 @@ fn crossings_end_as_blocked_by_flips() {
         for inner in 1..4 {
             subs.rotate_left(1);
             let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &subs };
-            let mut expected = start.mesh.clone();
-            let mut insertion = Insertion::new(&mut expected, &start.positions, &subs).unwrap();
-            insertion.set_inner_rounds(inner);
-            insertion.set_longest_rebuilt(0);
-            let mut error = Ok(());
-            while !insertion.is_done() && error.is_ok() {
-                let walks = insertion.report().outer_rounds;
-                error = insertion.outer_round();
-                by_flips += u32::from(error.is_err() && insertion.report().outer_rounds > walks);
-            }
-            let fault = error.err().map(|error| match error {
-                ConstrainError::Blocked { sub_constraint, .. } => {
-                    Fault::Blocked(subs.iter().position(|s| *s == sub_constraint).unwrap() as u32)
-                }
-                other => panic!("{other}"),
-            });
             let rounds = Rounds { inner, longest: 0, least: 0, ..Rounds::default() };
-            let (counts, mesh) = run(&mut gpu, &stages[seed as usize % 2], &case, rounds);
-            assert_eq!(counts.fault, fault, "{seed}, {inner}");
-            assert!(mesh == expected, "{seed}, {inner}");
+            let outcome = assert_same(&mut gpu, &stages[seed as usize % 2], "diagonals", &case, rounds);
+            by_flips += u32::from(outcome.fault.is_some() && outcome.by_flips);
         }
     }
     assert!(by_flips > 2, "{by_flips}");
+}
+
+fn assert_random(gpu: &mut Gpu, stages: &[Stage], seed: u64, most: usize) -> Option<Outcome> {
+    let start = Start::stage_4(&polder_tests::random(seed, most));
+    // None if all points lie on a line.
+    let walk = reference::walk(&start.mesh, &start.positions, &start.constraints).ok()?;
+    let case = Case { mesh: &start.mesh, positions: &start.positions, sub_constraints: &walk.sub_constraints };
+    let longest = LONGEST[seed as usize % 4];
+    let rounds = Rounds { inner: 1 + (seed / 4 % 10) as u32, longest, least: 0, ..Rounds::default() };
+    Some(assert_same(gpu, &stages[seed as usize % 2], &format!("random({seed}, {most})"), &case, rounds))
+}
+
+#[test]
+fn random_inputs() {
+    let (mut gpu, stages) = stages();
+    let outcomes: Vec<_> = (0..60).filter_map(|seed| assert_random(&mut gpu, &stages, seed, 300)).collect();
+    let faults = outcomes.iter().filter(|outcome| outcome.fault.is_some()).count();
+    assert!(faults > 9 && outcomes.len() > faults + 9, "{faults} of {}", outcomes.len());
+}
+
+#[test]
+#[ignore = "long"]
+fn many_random_inputs() {
+    let (mut gpu, stages) = stages();
+    random_support::many(|seed, most| drop(assert_random(&mut gpu, &stages, seed, most)));
 }
 
 /// Sub-constraints may come in any order and repeatedly: constrained Delaunay triangulations do not tell.
