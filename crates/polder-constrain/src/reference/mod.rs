@@ -29,6 +29,7 @@ mod keys;
 mod limits;
 mod near;
 mod pairs;
+mod pairwise;
 mod place;
 mod rebuild;
 mod walk;
