@@ -6,10 +6,8 @@
 mod facade_gpu_support;
 mod vulkan_support;
 
-use facade_gpu_support::{assert_on_device, assert_same, close, on_cpu, on_device, open, sets, stage};
-use polder::{
-    Backend, CrossingPolicy, DVec2, Error, Gpu, MeshError, Options, Place, Pslg, Report, triangulate, verify,
-};
+use facade_gpu_support::{assert_on_device, assert_same, close, on_cpu, on_device, open, sets, stage, twice};
+use polder::{Backend, CrossingPolicy, DVec2, Error, Gpu, MeshError, Options, Pslg, Report, triangulate, verify};
 use polder_flip::gpu::Arithmetic;
 use polder_io::generate;
 use polder_tests::constrained_families;
@@ -247,35 +245,6 @@ fn by_the_facade() {
     assert!(by(vulkan) == by(on_cpu()));
 }
 
-/// Whether the device gives what the CPU gives; prints what it took.
-fn is_same(gpu: &mut Gpu, name: &str, pslg: &Pslg) -> bool {
-    let expected = triangulate(pslg, &on_cpu()).unwrap();
-    gpu.release();
-    // Once more on the same memory, as a card that has worked.
-    let _ = gpu.triangulate(pslg, &Options::default());
-    let output = match gpu.triangulate(pslg, &Options::default()) {
-        Ok(output) => output,
-        Err(error) => {
-            println!("{name}: {error}");
-            return false;
-        }
-    };
-    assert_on_device(&output.report, name);
-    let of = |name: &str| 1e3 * stage(&output.report, name).seconds;
-    let on_device = output.report.stages.iter().filter(|stage| stage.on == Place::Device);
-    let all: f64 = on_device.map(|stage| 1e3 * stage.seconds).sum();
-    let (digest, waits) = (output.triangulation.digest(), output.report.device.as_ref().unwrap().host_waits);
-    let [walk, constrain, flip] = ["walk", "constrain", "flip"].map(of);
-    let bytes = output.report.device.as_ref().unwrap().peak_bytes / pslg.points().len() as u64;
-    println!(
-        "{name}: {digest}, {waits} waits, {bytes} bytes a point at the highest peak so far, {all:.2} ms on the device: walk {walk:.2}, constrain {constrain:.2}, flip {flip:.2}; {:?}",
-        stage(&output.report, "constrain").counts
-    );
-    digest == expected.triangulation.digest()
-        && output.triangulation == expected.triangulation
-        && output.report.constraints == expected.report.constraints
-}
-
 /// Takes minutes on a large GPU with many cores beside it; `POLDER_POINTS` says how many points, `POLDER_FAMILY` which ones.
 #[test]
 #[ignore = "long"]
@@ -285,7 +254,7 @@ fn every_large_family_has_the_digest_of_the_cpu() {
     let mut gpu = open(Arithmetic::Filtered);
     let mut failed = Vec::new();
     for (name, pslg) in constrained_families(points, 1) {
-        if wanted.as_ref().is_none_or(|wanted| wanted == name) && !is_same(&mut gpu, name, &pslg) {
+        if wanted.as_ref().is_none_or(|wanted| wanted == name) && twice(&mut gpu, name, &pslg).is_none() {
             failed.push(name);
         }
     }
@@ -301,12 +270,13 @@ fn large_recipes_and_all_real_sets_have_the_digest_of_the_cpu() {
     let mut gpu = open(Arithmetic::Filtered);
     let mut failed = Vec::new();
     for (name, pslg) in sets() {
-        failed.extend((!is_same(&mut gpu, &name, &pslg)).then_some(name));
+        failed.extend(twice(&mut gpu, &name, &pslg).is_none().then_some(name));
     }
     let most = std::env::var("POLDER_POINTS").map_or(10_000_000, |text| text.parse().unwrap());
     for points in [1_000_000, 10_000_000].into_iter().filter(|&points| points <= most) {
         let name = format!("{points} points, {} constraints", points / 10);
-        failed.extend((!is_same(&mut gpu, &name, &generate::segments(points, points / 10, 1))).then_some(name));
+        let pslg = generate::segments(points, points / 10, 1);
+        failed.extend(twice(&mut gpu, &name, &pslg).is_none().then_some(name));
     }
     assert_eq!(failed, Vec::<String>::new());
     close(gpu);

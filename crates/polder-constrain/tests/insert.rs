@@ -4,6 +4,8 @@
 #[path = "common/bad_case.rs"]
 mod bad_case;
 mod common;
+#[path = "common/diagonals.rs"]
+mod diagonals;
 
 use common::*;
 use glam::DVec2;
@@ -225,20 +227,14 @@ fn crossing_constraints_are_an_error_before_any_flip() {
     assert_eq!(error, ConstrainError::NotAVertex { constraint: 1, vertex: 2 });
 }
 
-/// What crosses a constraint can become an edge by that one's own flips. Constrained edges stay all the same, and so one of the
-/// two ends as blocked, whatever the order.
+/// Constrained edges stay, and so one of two that cross ends as blocked, whatever the order.
 #[test]
 fn crossing_constraints_never_go_in_unnoticed() {
     let mut met = [0; 2];
     for seed in 0..400 {
         let positions = uniform(100, seed);
         let mesh = delaunay(&positions);
-        // One across the square, and the other diagonals of edges that it crosses: of some its ends lie on either side too.
-        let chain = triangle_chain(&mesh, &positions, [0, 99]).unwrap().triangles;
-        let edges = chain.iter().flat_map(|&t| (0..3).map(move |k| 3 * t + k));
-        let diagonals = edges.filter(|&h| chain.contains(&(mesh.twin(h) / 3)));
-        let diagonals = diagonals.map(|h| [mesh.apex(h), mesh.apex(mesh.twin(h))]).step_by(5);
-        let constraints: Vec<[u32; 2]> = std::iter::once([0, 99]).chain(diagonals).collect();
+        let constraints = diagonals::with_diagonals(&mesh, &positions, [0, 99]);
         let walk = reference::walk(&mesh, &positions, &constraints).unwrap();
         if reference::crossings(&mesh, &positions, &walk, 1).unwrap().pairs.is_empty() {
             continue;

@@ -48,17 +48,39 @@ pub(crate) fn assert_on_device(report: &Report, name: &str) {
 pub(crate) fn assert_same(gpu: &mut Gpu, name: &str, pslg: &Pslg, options: &Options) -> Report {
     let output = gpu.triangulate(pslg, options).unwrap_or_else(|error| panic!("{name}: {error}"));
     let expected = triangulate(pslg, &on_cpu()).unwrap();
-    let (found, wanted) = (&output.triangulation, &expected.triangulation);
-    assert_eq!(found.digest(), wanted.digest(), "{name}");
-    assert_eq!(found.constrained_bits(), wanted.constrained_bits(), "{name}");
-    assert_eq!(found.chains(), wanted.chains(), "{name}");
-    assert!(found == wanted, "{name}");
-    assert_eq!(found.neighbors(), wanted.neighbors(), "{name}");
-    let Report { points, constraints, triangles, .. } = expected.report;
-    let told = (&output.report.points, &output.report.constraints, output.report.triangles);
-    assert_eq!(told, (&points, &constraints, triangles), "{name}");
+    polder_tests::assert_same_output(name, &output, &expected);
     assert_on_device(&output.report, name);
     output.report
+}
+
+/// A large input twice, the second time on the memory of the first, as a card that has worked; prints what the device took then.
+/// The reports, if both results are the CPU's.
+pub(crate) fn twice(gpu: &mut Gpu, name: &str, pslg: &Pslg) -> Option<[Report; 2]> {
+    let expected = triangulate(pslg, &on_cpu()).unwrap();
+    gpu.release();
+    let mut one = || {
+        let output =
+            gpu.triangulate(pslg, &Options::default()).inspect_err(|error| println!("{name}: {error}")).ok()?;
+        assert_on_device(&output.report, name);
+        let same = output.triangulation.digest() == expected.triangulation.digest()
+            && output.triangulation == expected.triangulation
+            && output.report.constraints == expected.report.constraints;
+        same.then_some(output.report)
+    };
+    let reports = [one()?, one()?];
+    let report = &reports[1];
+    let device = report.device.as_ref().unwrap();
+    let (waits, bytes) = (device.host_waits, device.peak_bytes / pslg.points().len() as u64);
+    let stages: Vec<&StageReport> = report.stages.iter().filter(|stage| stage.on == Place::Device).collect();
+    let all: f64 = stages.iter().map(|stage| 1e3 * stage.seconds).sum();
+    let digest = expected.triangulation.digest();
+    println!(
+        "{name}: {digest}, {waits} waits, {bytes} bytes a point at the highest peak so far, {all:.2} ms on the device:"
+    );
+    for stage in stages {
+        println!("  {} {:.2} ms, {:?}", stage.name, 1e3 * stage.seconds, stage.counts);
+    }
+    Some(reports)
 }
 
 pub(crate) fn stage<'a>(report: &'a Report, name: &str) -> &'a StageReport {

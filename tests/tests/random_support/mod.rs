@@ -22,11 +22,7 @@ pub(crate) fn case(seed: u64, most: usize, mut other: impl FnMut(&Pslg, Crossing
         let name = format!("random({seed}, {most}), {what}");
         match (other(pslg, crossings), expected) {
             (Ok(found), Ok(expected)) => {
-                let told = |output: &Output| (output.report.points.clone(), output.report.constraints.clone());
-                assert_eq!(told(&found), told(&expected), "{name}");
-                assert_eq!(found.triangulation.digest(), expected.triangulation.digest(), "{name}");
-                assert!(found.triangulation == expected.triangulation, "{name}");
-                assert!(found.triangulation.neighbors() == expected.triangulation.neighbors(), "{name}");
+                polder_tests::assert_same_output(&name, &found, &expected);
                 None
             }
             (found, expected) => {

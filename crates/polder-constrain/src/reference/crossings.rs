@@ -12,8 +12,9 @@
 //! Where there are more crossings than asked for, the first ones in the order of (higher constraint, lower constraint)
 //! are kept: prefixes of the constraints are searched until one has enough, and not too many.
 //!
-//! Where few constraints run through very many triangles, all pairs are tested after all, in that order (see the module
-//! `pairwise`): 34,000 that cross in more than a million pairs took 70 s by chords and prefixes, and take 1.3.
+//! Where few constraints run through very many triangles, or very many cross, pairs are tested after all, in that order (see the
+//! module `pairwise`). Of 34,000 constraints more than a million pairs cross in `random(45_000_000, 200_000)` of the workspace's
+//! tests: `many_random_inputs_give_one_result` took 58 s on that input (2 cores) by chords and prefixes, and takes 9.
 
 use super::chords::{Chord, Place, Room};
 use super::fan::{enter, leave};

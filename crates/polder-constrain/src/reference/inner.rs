@@ -126,19 +126,16 @@ impl Insertion<'_> {
         for &candidate in &candidates {
             self.list(candidate.h / 3);
         }
-        let mut blocked = None;
-        for winner in &winners {
-            if self.mesh.is_constrained(winner.h) {
-                let owner = place::owner(self.owner[(winner.h / 3) as usize]);
-                blocked = blocked.into_iter().chain(owner.map(|s| (s, winner.h))).min();
-                continue;
-            }
+        self.inner.candidates = candidates;
+        let won = winners.len() as u64;
+        self.report.inner_rounds += u64::from(won > 0);
+        let (blocked, flipped): (Vec<_>, Vec<_>) = winners.into_iter().partition(|w| self.mesh.is_constrained(w.h));
+        for winner in &flipped {
             self.flip(winner.h);
             self.report.flips[usize::from(winner.case - 1)] += 1;
         }
-        self.inner.candidates = candidates;
-        self.report.inner_rounds += u64::from(!winners.is_empty());
-        blocked.map_or(Ok(winners.len() as u64), |(s, h)| Err(self.blocked(s, h)))
+        let lowest = blocked.iter().filter_map(|w| Some((place::owner(self.owner[(w.h / 3) as usize])?, w.h))).min();
+        lowest.map_or(Ok(won), |(s, h)| Err(self.blocked(s, h)))
     }
 
     /// The pairs that may be flipped now claim their triangles, whoever owns these after the walks.

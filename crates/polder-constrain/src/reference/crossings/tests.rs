@@ -32,6 +32,7 @@ fn chunks_prefixes_and_tests_do_not_show() {
             let mut pairs = by_higher[..max].to_vec();
             pairs.sort_unstable();
             let expected = Crossings { pairs, truncated: max < whole.pairs.len() };
+            assert_eq!(crossings(&mesh, &positions, &walk, max).unwrap(), expected);
             // By prefixes; by tests of some pairs, if they suffice; of all pairs.
             for tests in [0, 1, 2, 4, 20, 64, 1000] {
                 assert_eq!(within(max, 7, tests), expected);
